@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# A room is a static library with a folder in include/ and one in src/; the arrows between rooms are
+# math <- brdf <- sampler <- everything else, kept by tests/guard/layers.py.
+#
+# reflectree_room(name SOURCES a.cpp ... USES reflectree::math ... PRIVATE PNG::PNG ...)
+# makes reflectree::name. Every used target is called package::target; the installed package looks
+# for exactly those packages when a consumer asks for the room.
+include(GNUInstallDirs)
+
+function(reflectree_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE" ${ARGN})
+  set(target reflectree_${name})
+  add_library(${target} STATIC ${ROOM_SOURCES})
+  add_library(reflectree::${name} ALIAS ${target})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC ${ROOM_USES}
+                        PRIVATE $<BUILD_INTERFACE:reflectree_options> ${ROOM_PRIVATE})
+
+  set(rooms "")
+  set(packages "")
+  foreach(used IN LISTS ROOM_USES ROOM_PRIVATE)
+    if(used MATCHES "^reflectree::(.+)$")
+      list(APPEND rooms ${CMAKE_MATCH_1})
+    elseif(used MATCHES "^([A-Za-z0-9_]+)::")
+      list(APPEND packages ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES packages)
+  set_property(GLOBAL APPEND PROPERTY REFLECTREE_BUILT_ROOMS ${name})
+  set_property(GLOBAL PROPERTY REFLECTREE_${name}_USES "${rooms}")
+  set_property(GLOBAL PROPERTY REFLECTREE_${name}_PACKAGES "${packages}")
+endfunction()
