@@ -14,6 +14,12 @@ class AnyBrdf {
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, AnyBrdf>) && Brdf<std::remove_cvref_t<F>>
   AnyBrdf(F f) : self_(std::make_shared<const Model<std::remove_cvref_t<F>>>(std::move(f))) {}
+  // The same with a wrong result: one readable line instead of a page of constraints.
+  template <class F>
+    requires(!Brdf<F>) && std::is_invocable_v<const F&, Direction, Direction>
+  AnyBrdf(const F&) {
+    static_assert(std::is_void_v<F>, "a BRDF returns float, Rgb or Spectrum");
+  }
 
   const BrdfTraits& traits() const { return self_->traits; }
   int channels() const { return self_->traits.channels; }
