@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A measured isotropic BRDF in the parameterisation of Dupuy and Jakob 2018, "An Adaptive
+// Parameterization for Efficient Material Acquisition and Rendering", the one of the EPFL RGL database:
+//   f cos_i = S(V^-1(m); theta_o) D(m) / (4 sigma(theta_o))
+// with m the half vector on the square, V the warp whose density is the distribution of visible normals,
+// S the measured colour, D the normal distribution and sigma its projected area. Known direction: wo.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "reflectree/brdf/brdf.hpp"
+
+namespace reflectree {
+
+// What an isotropic RGB file holds. Angles theta become u = sqrt(2 theta / pi), azimuths
+// v = phi / (2 pi) + 1/2; the last index is u.
+struct RglFields {
+  std::string name = "rgl";
+  std::vector<float> theta_o;  // radians, ascending: nodes of the known direction, at least 2
+  std::vector<float> sigma;    // [u]
+  std::vector<float> ndf;      // [u], sr^-1
+  std::vector<float> vndf;     // [theta_o][warp_height][warp_width]: unnormalised density on the square
+  int warp_width = 0, warp_height = 0;
+  std::vector<float> rgb;  // [theta_o][3][colour_height][colour_width]
+  int colour_width = 0, colour_height = 0;
+  bool jacobian = true;  // false: rgb is f cos_i already, without D / (4 sigma)
+};
+
+// f(wo, wi) in sr^-1, Rgb. Finite everywhere; cos_theta_i below 1e-6 counts as 1e-6.
+class RglTable {
+ public:
+  // Sizes must agree and theta_o ascend, as io/rgl.hpp makes sure; asserted. The warp's density is cut at 0.
+  explicit RglTable(const RglFields& fields);
+
+  Rgb operator()(const ShadingGeometry<float>& g) const;
+  BrdfTraits traits() const;
+
+  // How many entries of a file were negative and read as 0.
+  std::uint64_t clamped = 0;
+
+ private:
+  // Nodes of two neighbouring theta_o lie side by side, so that a look-up touches two cache lines.
+  struct WarpNode {
+    float cdf[2], pdf[2];  // integral along u up to the node; density at the node
+  };
+  struct WarpRow {
+    float cdf[2], mass[2];  // integral along v up to the row; integral along the row
+  };
+  struct ColourNode {
+    float rgb[2][4];
+  };
+  std::string name_;
+  std::vector<float> theta_o_, sigma_, ndf_;
+  std::vector<WarpNode> warp_;  // [theta_o pair][v][u]
+  std::vector<WarpRow> rows_;   // [theta_o pair][v]
+  std::vector<ColourNode> colour_;
+  int warp_width_, warp_height_, colour_width_, colour_height_;
+};
+
+}  // namespace reflectree

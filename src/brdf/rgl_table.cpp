@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/brdf/rgl_table.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "reflectree/brdf/fast_trigonometry.hpp"
+
+namespace reflectree {
+namespace {
+
+// A position on a grid of `size` nodes over [0, 1]: the node below and the fraction towards the next.
+struct GridPosition {
+  int node;
+  float fraction;
+};
+GridPosition locate(float u, int size) {
+  const float x = clamp(u, 0.f, 1.f) * float(size - 1);
+  const int node = std::min(int(x), size - 2);
+  return {node, x - float(node)};
+}
+
+float interpolate(const std::vector<float>& table, float u) {
+  const GridPosition p = locate(u, int(table.size()));
+  const float* node = table.data() + p.node;
+  return lerp(p.fraction, node[0], node[1]);
+}
+
+float elevation_to_u(float theta) { return sqrt(theta * (2.f / pi)); }
+
+// One slice of the warp, scaled to unit mass: cumulative trapezoids along u, then along v (the density is
+// bilinear between nodes).
+struct Slice {
+  std::vector<double> pdf, cdf, row_mass, row_cdf;
+};
+Slice integrate(const float* density, int width, int height) {
+  const auto w = std::size_t(width), h = std::size_t(height);
+  Slice s;
+  s.pdf.resize(w * h), s.cdf.resize(w * h), s.row_mass.resize(h), s.row_cdf.resize(h);
+  for (std::size_t y = 0; y < h; ++y) {
+    for (std::size_t x = 0; x < w; ++x) {
+      const std::size_t i = y * w + x;
+      s.pdf[i] = max(double(density[i]), 0.0);
+      s.cdf[i] = x == 0 ? 0 : s.cdf[i - 1] + 0.5 * (s.pdf[i - 1] + s.pdf[i]);
+    }
+    s.row_mass[y] = s.cdf[y * w + w - 1];
+    s.row_cdf[y] = y == 0 ? 0 : s.row_cdf[y - 1] + 0.5 * (s.row_mass[y - 1] + s.row_mass[y]);
+  }
+  const double total = s.row_cdf.back(), scale = total > 0 ? 1 / total : 0;
+  for (auto* table : {&s.pdf, &s.cdf, &s.row_mass, &s.row_cdf}) {
+    for (double& v : *table) v *= scale;
+  }
+  return s;
+}
+
+}  // namespace
+
+RglTable::RglTable(const RglFields& fields)
+    : name_(fields.name),
+      theta_o_(fields.theta_o),
+      sigma_(fields.sigma),
+      ndf_(fields.ndf),
+      warp_width_(fields.warp_width),
+      warp_height_(fields.warp_height),
+      colour_width_(fields.colour_width),
+      colour_height_(fields.colour_height) {
+  const std::size_t nodes = theta_o_.size(), pairs = nodes - 1;
+  const auto warp_size = std::size_t(warp_width_) * std::size_t(warp_height_);
+  const auto colour_size = std::size_t(colour_width_) * std::size_t(colour_height_);
+  assert(nodes > 1 && sigma_.size() > 1 && ndf_.size() > 1 && std::min(warp_width_, warp_height_) > 1 &&
+         std::min(colour_width_, colour_height_) > 1);
+  assert(fields.vndf.size() == nodes * warp_size && fields.rgb.size() == nodes * 3 * colour_size);
+  if (!fields.jacobian) {  // D / (4 sigma) = 1
+    sigma_.assign(2, 0.25f);
+    ndf_.assign(2, 1.f);
+  }
+  warp_.resize(pairs * warp_size);
+  rows_.resize(pairs * std::size_t(warp_height_));
+  colour_.resize(pairs * colour_size);
+  for (std::size_t t = 0; t < nodes; ++t) {
+    const Slice slice = integrate(fields.vndf.data() + t * warp_size, warp_width_, warp_height_);
+    const float* rgb = fields.rgb.data() + t * 3 * colour_size;
+    const auto store = [&](std::size_t pair, std::size_t side) {
+      for (std::size_t i = 0; i < warp_size; ++i) {
+        warp_[pair * warp_size + i].cdf[side] = float(slice.cdf[i]);
+        warp_[pair * warp_size + i].pdf[side] = float(slice.pdf[i]);
+      }
+      for (std::size_t y = 0; y < slice.row_mass.size(); ++y) {
+        rows_[pair * slice.row_mass.size() + y].cdf[side] = float(slice.row_cdf[y]);
+        rows_[pair * slice.row_mass.size() + y].mass[side] = float(slice.row_mass[y]);
+      }
+      for (std::size_t i = 0; i < colour_size; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          colour_[pair * colour_size + i].rgb[side][c] = rgb[c * colour_size + i];
+        }
+      }
+    };
+    if (t < pairs) store(t, 0);  // the lower end of the pair that starts here
+    if (t > 0) store(t - 1, 1);  // the upper end of the pair below
+  }
+}
+
+Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
+  // The known direction: its pair of nodes and the weights of both.
+  const float theta_o = detail::polar_angle(sin2_theta(g.wo), g.cos_theta_o);
+  std::size_t pair = 0;
+  while (pair + 2 < theta_o_.size() && theta_o >= theta_o_[pair + 1]) ++pair;
+  const float below = theta_o_[pair], above = theta_o_[pair + 1];
+  const float t1 = clamp((theta_o - below) / (above - below), 0.f, 1.f), t0 = 1 - t1;
+
+  // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
+  const bool normal = g.wo.x == 0 && g.wo.y == 0;
+  const float ox = select(normal, 1.f, g.wo.x), oy = g.wo.y;
+  const float phi = detail::angle(ox * g.wh.y - oy * g.wh.x, ox * g.wh.x + oy * g.wh.y);
+  const float u = elevation_to_u(detail::polar_angle(sin2_theta(g.wh), g.cos_theta_h));
+  const GridPosition px = locate(u, warp_width_), py = locate(phi * (0.5f / pi) + 0.5f, warp_height_);
+
+  // V^-1: the cumulative masses of the bilinear density up to the half vector, along u, then along v.
+  const float x1 = px.fraction, y1 = py.fraction, y0 = 1 - y1;
+  const auto stride = std::size_t(warp_width_);
+  const std::size_t row = pair * std::size_t(warp_height_) + std::size_t(py.node);
+  const WarpNode* lower = warp_.data() + row * stride + std::size_t(px.node);
+  const WarpNode* upper = lower + stride;
+  const auto along = [&](const WarpNode* n) {
+    const float cdf = t0 * n[0].cdf[0] + t1 * n[0].cdf[1];
+    const float p0 = t0 * n[0].pdf[0] + t1 * n[0].pdf[1], p1 = t0 * n[1].pdf[0] + t1 * n[1].pdf[1];
+    return cdf + x1 * (p0 + 0.5f * x1 * (p1 - p0));
+  };
+  const WarpRow* rows = rows_.data() + row;
+  const float m0 = t0 * rows[0].mass[0] + t1 * rows[0].mass[1];
+  const float m1 = t0 * rows[1].mass[0] + t1 * rows[1].mass[1];
+  const float mass = y0 * m0 + y1 * m1;
+  const float sx = (y0 * along(lower) + y1 * along(upper)) / select(mass > 0.f, mass, 1.f);
+  const float sy = t0 * rows[0].cdf[0] + t1 * rows[0].cdf[1] + y1 * (m0 + 0.5f * y1 * (m1 - m0));
+
+  // S, bilinear on the warped square.
+  const GridPosition qx = locate(sx, colour_width_), qy = locate(sy, colour_height_);
+  const auto colour_stride = std::size_t(colour_width_);
+  const ColourNode* n00 = colour_.data() +
+                          (pair * std::size_t(colour_height_) + std::size_t(qy.node)) * colour_stride +
+                          std::size_t(qx.node);
+  const float a1 = qx.fraction, a0 = 1 - a1, b1 = qy.fraction, b0 = 1 - b1;
+  const float scale =
+      interpolate(ndf_, u) / (4.f * interpolate(sigma_, elevation_to_u(theta_o)) * max(g.cos_theta_i, 1e-6f));
+  float out[4] = {0, 0, 0, 0};
+  const auto add = [&out](const ColourNode& n, float w0, float w1) {
+    for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];
+  };
+  add(n00[0], a0 * b0 * t0, a0 * b0 * t1);
+  add(n00[1], a1 * b0 * t0, a1 * b0 * t1);
+  add(n00[colour_stride], a0 * b1 * t0, a0 * b1 * t1);
+  add(n00[colour_stride + 1], a1 * b1 * t0, a1 * b1 * t1);
+  return scale * Rgb{out[0], out[1], out[2]};
+}
+
+BrdfTraits RglTable::traits() const {
+  BrdfTraits traits;
+  traits.name = name_;
+  traits.theta_o_knots = theta_o_;
+  return traits;
+}
+
+}  // namespace reflectree
