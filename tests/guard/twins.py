@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The guards' twins: each planted fault must be caught, and a clean file must not be."""
+import pathlib
+import tempfile
+import unittest
+
+import house_rules
+import layers
+
+TOP = "// SPDX-License-Identifier: Apache-2.0\n#pragma once\n"
+
+
+class Planted(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self.folder.name)
+        self.plant("include/reflectree/math/scalar.hpp", "#include <cmath>\n")
+        self.plant("include/reflectree/brdf/value.hpp", '#include "reflectree/math/scalar.hpp"\n')
+        self.plant("src/io/png.cpp", '#include <png.h>\n#include "reflectree/brdf/value.hpp"\n')
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def plant(self, path: str, text: str, top: str = TOP):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(top + text, encoding="utf-8")
+
+    def assert_caught(self, guard, words: str):
+        found = guard(self.root)
+        self.assertEqual(len(found), 1, found)
+        self.assertIn(words, found[0])
+
+    def test_clean_tree_passes(self):
+        self.assertEqual(layers.broken_arrows(self.root), [])
+        self.assertEqual(house_rules.broken_rules(self.root), [])
+
+    def test_upward_include(self):
+        self.plant("include/reflectree/math/frame.hpp", '#include "reflectree/brdf/value.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "math may not see brdf")
+
+    def test_upward_include_in_a_source(self):
+        self.plant("src/sampler/build.cpp", '  #  include "reflectree/io/sampler_file.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "sampler may not see io")
+
+    def test_sideways_include_at_the_rim(self):
+        self.plant("src/verify/furnace.cpp", '#include "reflectree/draw/page.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "verify may not see draw")
+
+    def test_library_in_the_core(self):
+        self.plant("src/brdf/registry.cpp", "#include <fmt/core.h>\n")
+        self.assert_caught(layers.broken_arrows, "standard library alone")
+
+    def test_private_header_of_another_room(self):
+        self.plant("src/math/secret.hpp", "")
+        self.plant("src/sampler/build.cpp", '#include "../math/secret.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "reaches into another folder")
+
+    def test_embree_elsewhere(self):
+        self.plant("src/render/film.cpp", "#include <embree3/rtcore.h>\n")
+        self.assert_caught(layers.broken_arrows, "embree_scene alone")
+
+    def test_unknown_room(self):
+        self.plant("src/cellar/box.cpp", "")
+        self.assert_caught(layers.broken_arrows, "no room is called cellar")
+
+    def test_missing_spdx(self):
+        self.plant("src/math/map.cpp", "int x;\n", top="")
+        self.assert_caught(house_rules.broken_rules, "SPDX")
+
+    def test_header_without_pragma(self):
+        self.plant("src/math/map.hpp", "int x;\n", top=TOP.split("\n")[0] + "\n")
+        self.assert_caught(house_rules.broken_rules, "#pragma once")
+
+    def test_left_for_later(self):
+        self.plant("src/math/map.cpp", "// TO" + "DO: the inverse\n")
+        self.assert_caught(house_rules.broken_rules, "left for later")
+
+    def test_absolute_path(self):
+        self.plant("src/io/data.cpp", 'const char* folder = "/' + 'home/someone/data";\n')
+        self.assert_caught(house_rules.broken_rules, "absolute path")
+
+
+if __name__ == "__main__":
+    unittest.main()
