@@ -103,8 +103,10 @@ RglTable::RglTable(const RglFields& fields)
 Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
   // The known direction: its pair of nodes and the weights of both.
   const float theta_o = detail::polar_angle(sin2_theta(g.wo), g.cos_theta_o);
-  std::size_t pair = 0;
-  while (pair + 2 < theta_o_.size() && theta_o >= theta_o_[pair + 1]) ++pair;
+  unsigned inner_nodes_passed = 0;  // counted without a branch: random directions would mispredict it
+  for (std::size_t i = 1; i + 1 < theta_o_.size(); ++i)
+    inner_nodes_passed += theta_o >= theta_o_[i] ? 1U : 0U;
+  const std::size_t pair = inner_nodes_passed;
   const float below = theta_o_[pair], above = theta_o_[pair + 1];
   const float t1 = clamp((theta_o - below) / (above - below), 0.f, 1.f), t0 = 1 - t1;
 
