@@ -9,15 +9,24 @@
 
 namespace reflectree {
 
+// A function that writes the channels of whole batches itself, zero below the surface: a sum, a table of
+// many channels. AnyBrdf passes the spans on.
+template <class F>
+concept ChannelBatchBrdf = Brdf<F> &&
+    requires(const F& f, std::span<const Direction> w, std::span<const ShadingGeometry<float>> g,
+             std::span<float> out) {
+  f.eval(w, w, out);
+  f.eval(g, out);
+};
+
 class AnyBrdf {
  public:
   template <class F>
-    requires(!std::same_as<std::remove_cvref_t<F>, AnyBrdf>) && Brdf<std::remove_cvref_t<F>>
-  AnyBrdf(F f) : self_(std::make_shared<const Model<std::remove_cvref_t<F>>>(std::move(f))) {}
+  requires(!std::same_as<std::remove_cvref_t<F>, AnyBrdf>) && Brdf<std::remove_cvref_t<F>> AnyBrdf(F f)
+      : self_(std::make_shared<const Model<std::remove_cvref_t<F>>>(std::move(f))) {}
   // The same with a wrong result: one readable line instead of a page of constraints.
   template <class F>
-    requires(!Brdf<F>) && std::is_invocable_v<const F&, Direction, Direction>
-  AnyBrdf(const F&) {
+  requires(!Brdf<F>) && std::is_invocable_v<const F&, Direction, Direction> AnyBrdf(const F&) {
     static_assert(std::is_void_v<F>, "a BRDF returns float, Rgb or Spectrum");
   }
 
@@ -54,9 +63,12 @@ class AnyBrdf {
     void store(const ValueOf<F>& value, float* out) const {
       for (int c = 0; c < this->traits.channels; ++c) out[c] = channel(value, c);
     }
-    void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<float> out) const override {
+    void eval(std::span<const Direction> wo, std::span<const Direction> wi,
+              std::span<float> out) const override {
       const auto stride = std::size_t(this->traits.channels);
-      if constexpr (BatchBrdf<F>) {
+      if constexpr (ChannelBatchBrdf<F>) {
+        f.eval(wo, wi, out);
+      } else if constexpr (BatchBrdf<F>) {
         std::vector<ValueOf<F>> values(wo.size());
         f.eval(wo, wi, values);
         for (std::size_t i = 0; i < wo.size(); ++i) {
@@ -71,7 +83,9 @@ class AnyBrdf {
     }
     void eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const override {
       const auto stride = std::size_t(this->traits.channels);
-      if constexpr (BatchBrdf<F>) {
+      if constexpr (ChannelBatchBrdf<F>) {
+        f.eval(geometry, out);
+      } else if constexpr (BatchBrdf<F>) {
         std::vector<Direction> wo(geometry.size()), wi(geometry.size());
         for (std::size_t i = 0; i < geometry.size(); ++i) wo[i] = geometry[i].wo, wi[i] = geometry[i].wi;
         eval(wo, wi, out);

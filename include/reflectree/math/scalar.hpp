@@ -45,6 +45,7 @@ using std::cos;
 using std::exp;
 using std::isfinite;
 using std::log;
+using std::log1p;
 using std::pow;
 using std::sin;
 using std::sqrt;

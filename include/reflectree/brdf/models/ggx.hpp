@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "reflectree/brdf/shading_geometry.hpp"
-#include "reflectree/brdf/value.hpp"
+#include "reflectree/brdf/description.hpp"
+#include "reflectree/brdf/models/fresnel.hpp"
 
 namespace reflectree {
-
-// F_schlick = f0 + (1 - f0)(1 - cos theta_d)^5. Schlick 1994, eq. 15.
-template <class T>
-RgbT<T> fresnel_schlick(Rgb f0, T cos_theta_d) {
-  const T m = max(T(1) - cos_theta_d, T(0));
-  const T m2 = m * m, m5 = m2 * m2 * m;
-  const auto lifted = [m5](float c) { return T(c) + (T(1) - T(c)) * m5; };
-  return {lifted(f0.r), lifted(f0.g), lifted(f0.b)};
-}
 
 // Trowbridge-Reitz (GGX) distribution per solid angle of the half vector; Walter et al. 2007, eq. 33,
 // written with sin^2 theta_h so that it stays precise at the peak of the sharpest lobes.
@@ -37,11 +28,22 @@ T ggx_visibility(T cos_theta_o, T cos_theta_i, T alpha) {
 struct Ggx {
   float alpha = 0.1f;
   Rgb f0{1.f, 0.8f, 0.3f};
+
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T d = ggx_distribution(g.wh, T(alpha));
     const T v = ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha));
     return d * v * fresnel_schlick(f0, g.cos_theta_d);
+  }
+
+  BrdfTraits traits() const { return model_traits(*this); }
+  static Description<Ggx> describe() {
+    return {"ggx",
+            ModelClass::physical,
+            "metal of microfacets: Trowbridge-Reitz, height-correlated Smith, Schlick's Fresnel term",
+            "Walter et al. 2007, Microfacet models for refraction, eq. 33; Heitz 2014, eq. 99",
+            {{"alpha", &Ggx::alpha, 1e-3f, 1, "", "microfacet width"},
+             {"f0", &Ggx::f0, 0, 1, "", "Fresnel reflectance at normal incidence"}}};
   }
 };
 

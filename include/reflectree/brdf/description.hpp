@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a model describes itself. Each model struct has a static describe(), next to its formula; the
+// parser, the printer, the registry and the documentation all read it, so that they cannot disagree.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "reflectree/brdf/brdf.hpp"
+
+namespace reflectree {
+
+// physical: reciprocal and energy-conserving for all allowed parameters; approximate: breaks one of
+// them for some; experimental: serves tests.
+enum class ModelClass { physical, approximate, experimental };
+const char* name_of(ModelClass model_class);
+
+// A parameter of model M: a member, float or Rgb, with its range (per channel, borders included).
+// The default is the member's initialiser. A pair NAME_x, NAME_y can be given together as NAME.
+template <class M>
+struct Parameter {
+  std::string_view name;
+  std::variant<float M::*, Rgb M::*> member;
+  float lo = 0, hi = 1;
+  std::string_view unit;  // "" where there is none
+  std::string_view meaning;
+
+  bool is_rgb() const { return member.index() == 1; }
+  Rgb get(const M& model) const {
+    return is_rgb() ? model.**std::get_if<1>(&member) : to_rgb(model.**std::get_if<0>(&member));
+  }
+  void set(M& model, Rgb value) const {
+    if (is_rgb()) {
+      model.**std::get_if<1>(&member) = value;
+    } else {
+      model.**std::get_if<0>(&member) = value.r;
+    }
+  }
+};
+
+template <class M>
+struct Description {
+  std::string_view name;  // as written in material text
+  ModelClass model_class;
+  std::string_view summary, source;
+  std::vector<Parameter<M>> parameters;
+};
+
+// For models whose parts share the energy; a rounding above 1 is let pass.
+inline bool sum_above_one(Rgb a, Rgb b) {
+  const Rgb sum = a + b;
+  return max(sum.r, max(sum.g, sum.b)) > 1.000001f;
+}
+
+// "ggx:alpha=0.1,f0=1/0.8/0.3", the canonical text of one model.
+std::string model_text(std::string_view model, std::span<const std::string_view> names,
+                       std::span<const Rgb> values);
+
+template <class M>
+BrdfTraits model_traits(const M& model, bool isotropic = true) {
+  const auto description = M::describe();
+  std::vector<std::string_view> names;
+  std::vector<Rgb> values;
+  for (const auto& p : description.parameters) {
+    names.push_back(p.name);
+    values.push_back(p.get(model));
+  }
+  BrdfTraits traits;
+  traits.name = model_text(description.name, names, values);
+  traits.isotropic = isotropic;
+  return traits;
+}
+
+}  // namespace reflectree

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "reflectree/brdf/description.hpp"
+#include "reflectree/brdf/models/fresnel.hpp"
+#include "reflectree/brdf/models/lobe.hpp"
+
+namespace reflectree {
+
+// f = 28 kd / (23 pi) (1 - f0) (1 - (1 - co/2)^5) (1 - (1 - ci/2)^5)
+//   + sqrt((nx+1)(ny+1)) / (8 pi) hz^((nx hx^2 + ny hy^2) / (1 - hz^2)) F(cos_d) / (cos_d max(co, ci)).
+// Ashikhmin and Shirley 2000 (their nu, nv are n_x, n_y; Rd, Rs are kd, f0).
+struct AshikhminShirley {
+  Rgb kd{0.3f, 0.3f, 0.3f};
+  Rgb f0{0.05f, 0.05f, 0.05f};
+  float n_x = 100;
+  float n_y = 100;
+
+  template <class T>
+  RgbT<T> operator()(const ShadingGeometry<T>& g) const {
+    // hz^e = (1 - s2)^(e/2); the exponent has the limit 0/0 at the pole, where s2 is kept positive.
+    const T s2 = clamp(sin2_theta(g.wh), T(1e-30), T(1));
+    const T exponent = (T(n_x) * sqr(g.wh.x) + T(n_y) * sqr(g.wh.y)) / s2;
+    const T scale = sqrt((T(n_x) + T(1)) * (T(n_y) + T(1))) / (T(8) * pi_v<T>);
+    const T lobe =
+        scale * cos_power(s2, T(0.5) * exponent) / (g.cos_theta_d * max(g.cos_theta_o, g.cos_theta_i));
+
+    const T white = T(28) / (T(23) * pi_v<T>)*(T(1) - schlick_power(T(0.5) * g.cos_theta_o)) *
+                    (T(1) - schlick_power(T(0.5) * g.cos_theta_i));
+    const Rgb under = kd * (Rgb{1, 1, 1} - f0);
+    return white * lift<T>(under) + lobe * fresnel_schlick(f0, g.cos_theta_d);
+  }
+
+  BrdfTraits traits() const { return model_traits(*this, n_x == n_y); }
+  static Description<AshikhminShirley> describe() {
+    return {"ashikhmin_shirley",
+            ModelClass::physical,
+            "Phong-like lobe of the half vector with Fresnel term over a coupled diffuse part",
+            "Ashikhmin and Shirley 2000, An anisotropic Phong BRDF model",
+            {{"kd", &AshikhminShirley::kd, 0, 1, "", "diffuse albedo (Rd)"},
+             {"f0", &AshikhminShirley::f0, 0, 1, "", "specular reflectance at normal incidence (Rs)"},
+             {"n_x", &AshikhminShirley::n_x, 1, 1e6f, "", "exponent along x (nu)"},
+             {"n_y", &AshikhminShirley::n_y, 1, 1e6f, "", "exponent along y (nv)"}}};
+  }
+};
+
+}  // namespace reflectree

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "reflectree/brdf/description.hpp"
+#include "reflectree/brdf/models/lobe.hpp"
+
+namespace reflectree {
+
+// Modified Phong: f = kd / pi + ks (n + 2) / (2 pi) max(0, cos alpha)^n, alpha the angle between wi and
+// the mirror direction of wo. Lafortune and Willems 1994.
+struct Phong {
+  Rgb kd{0.2f, 0.2f, 0.2f};
+  Rgb ks{0.6f, 0.6f, 0.6f};
+  float n = 50;
+
+  template <class T>
+  RgbT<T> operator()(const ShadingGeometry<T>& g) const {
+    const T lobe = (T(n) + T(2)) / (T(2) * pi_v<T>)*cos_power(versine(g.wi, mirrored(g.wo)), T(n));
+    return T(1) / pi_v<T> * lift<T>(kd) + lobe * lift<T>(ks);
+  }
+
+  BrdfTraits traits() const { return model_traits(*this); }
+  const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
+  static Description<Phong> describe() {
+    return {"phong",
+            ModelClass::physical,
+            "diffuse part and cosine-power lobe about the mirror direction",
+            "Lafortune and Willems 1994, Using the modified Phong reflectance model",
+            {{"kd", &Phong::kd, 0, 1, "", "diffuse albedo"},
+             {"ks", &Phong::ks, 0, 1, "", "albedo of the lobe at normal incidence"},
+             {"n", &Phong::n, 1, 1e6f, "", "exponent"}}};
+  }
+};
+
+}  // namespace reflectree
