@@ -9,6 +9,10 @@
 # REFLECTREE_DATA, if set, is shown to the commands read-only.
 set -euo pipefail
 
+if [[ ${1:-} == --help ]]; then
+  sed -n '3,9s/^# \{0,1\}//p' "$0"
+  exit
+fi
 ((EUID == 0)) || { echo "try-bare-debian: must be root, to make a system of its own" >&2; exit 2; }
 # Mounts live in a namespace of our own and vanish with it.
 if [[ ${1:-} != --inside ]]; then exec unshare --mount --propagation private "$0" --inside "$@"; fi
@@ -20,7 +24,7 @@ scratch=$(mktemp -d)
 root=$scratch/root
 mkdir "$root"
 
-unmount() { for folder in data dev sys proc; do mountpoint -q "$root/$folder" && umount "$root/$folder"; done; true; }
+unmount() { for folder in data dev/pts dev sys proc; do mountpoint -q "$root/$folder" && umount "$root/$folder"; done; true; }
 tear_down() {
   unmount
   rm -rf --one-file-system "$scratch"
@@ -44,6 +48,7 @@ git clone --quiet --no-hardlinks "$home" "$root/srv/reflectree"
 mount -t proc proc "$root/proc"
 mount -t sysfs -o ro sysfs "$root/sys"
 mount --bind /dev "$root/dev"
+mount -t devpts devpts "$root/dev/pts" 2>/dev/null || true
 data=()
 if [[ -n ${REFLECTREE_DATA:-} ]]; then
   mkdir "$root/data"
