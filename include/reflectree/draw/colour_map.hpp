@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The colour map of every heat map: from night blue through plum and coral to pale gold.
+// Lightness in OKLab (Ottosson 2020) rises linearly from 0.19 to 0.96, so that equal steps look equal,
+// in grey and to colour-blind eyes too; hue turns one way, chroma is the most that sRGB has, up to 0.17.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace reflectree::draw {
+
+struct Rgb8 {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend constexpr bool operator==(Rgb8, Rgb8) = default;
+};
+
+// t in [0, 1]; clamped; NaN is 0.
+Rgb8 colour(double t);
+// For ratios: t = 0 teal, 0.5 near white, 1 rust; lightness is symmetric about the middle.
+Rgb8 diverging_colour(double t);
+
+using Palette = std::array<Rgb8, 255>;
+const Palette& palette();            // colour(i / 254)
+const Palette& diverging_palette();  // diverging_colour(i / 254)
+
+// Lightness L in OKLab of an sRGB colour, 0 black to 1 white.
+double oklab_lightness(Rgb8 c);
+
+}  // namespace reflectree::draw

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures of a material for one wo = viewer_at(theta_o): its target over the disk, the exact-mode
+// tree over it, samples over it, and the lobe in the plane of incidence under a histogram of samples.
+#pragma once
+
+#include <span>
+
+#include "reflectree/draw/disk_image.hpp"
+#include "reflectree/draw/figure.hpp"
+
+namespace reflectree::draw {
+
+// t(wo, wi) in sr^-1, log colour.
+Figure target_figure(const DiskImage& target, Direction wo);
+
+// The bound of every leaf in the target's units and colours, leaf borders mapped to the disk.
+// `range`: of the target's picture, so that colours agree.
+Figure tree_figure(const SamplerData& data, Direction wo, const Axis& range);
+
+// At most `shown` of the samples as dots over the pale target.
+Figure samples_figure(const DiskImage& target, Direction wo, std::span<const Direction> samples,
+                      std::size_t shown = 2500);
+
+// Sampled directions near the plane of incidence (the x-z plane), counted by their angle in it.
+struct PlaneHistogram {
+  static constexpr int bins = 72;  // over -90..90 degrees
+  static constexpr double bin_deg = 180.0 / bins;
+  static constexpr double half_width_deg = 5;  // |latitude about the plane|
+  std::vector<double> count = std::vector<double>(bins, 0.0);
+  double samples = 0;  // all of them, inside the band or not
+  // Density per solid angle of a bin, sr^-1.
+  double density(int bin) const;
+  double density_per_count() const;
+};
+PlaneHistogram plane_histogram(std::span<const Direction> samples);
+
+// t cos_i / albedo, averaged over the latitudes of the band; `angle` in degrees, positive on the
+// viewer's side.
+struct PlaneLobe {
+  std::vector<double> angle, density;
+};
+PlaneLobe plane_lobe(const AnyBrdf& f, const Target& target, Direction wo, double albedo);
+
+// `albedo` = albedo_at(data.albedo, wo.z).
+Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
+                    std::span<const Direction> samples);
+
+// The target's disk alone, 64 units wide: for tables.
+Figure thumbnail_figure(const AnyBrdf& f, const Target& target, Direction wo);
+
+// The square of the domain with the slab's leaves, in colours of the normalised bound (majorant).
+Figure square_figure(const SamplerData& data, Direction wo);
+
+// Leaves of every slab of theta_o, exact and one-shot.
+Figure slabs_figure(const SamplerData& data);
+
+// The borders between leaves as curves on the disk of radius `radius` about (x, y); `background` chooses
+// light or dark strokes.
+std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo, double x,
+                         double y, double radius, const DiskImage& background, const Axis& range);
+
+}  // namespace reflectree::draw

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures over the disk.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "disk_frame.hpp"
+#include "reflectree/draw/material_figures.hpp"
+#include "reflectree/sampler/domain_map.hpp"
+
+namespace reflectree::draw {
+
+namespace {
+
+Figure disk_figure(const std::string& title, Direction wo) {
+  Figure figure{disk_figure_width, disk_figure_height, title, {}, {}};
+  figure.body = disk_heading(title, wo);
+  return figure;
+}
+
+std::string bar_below(const DiskPlace& place, Axis range, const std::string& title) {
+  range.from = place.x - place.radius;
+  range.to = place.x + place.radius;
+  return colour_bar({range, place.y + place.radius + 22, 8, title});
+}
+
+std::string angle_words(Direction wo) {
+  return number(double(theta_of(wo)) * 180 / pi_v<double>, 3) + " degrees";
+}
+
+// A border of the square as a curve over the disk: halved until a chord stays within a tenth of a unit,
+// cut where the domain leaves the upper hemisphere, split by the brightness behind it.
+class BorderPen {
+ public:
+  BorderPen(const Domain& domain, Direction wo, const DiskPlace& place, const DiskImage& background,
+            const Axis& range)
+      : domain_(domain), wo_(wo), place_(place), background_(background), range_(range) {
+    range_.from = 0;
+    range_.to = 1;
+  }
+
+  void draw(Vec2<float> a, Vec2<float> b) {
+    constexpr int pieces = 4;  // at least: the square's diagonals are kinks of its map to the disk
+    Point from = lifted(a);
+    for (int k = 1; k <= pieces; ++k) {
+      const float t = float(k) / pieces;
+      const Vec2<float> p{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+      const Point to = lifted(p);
+      refine(from, to, 0);
+      from = to;
+    }
+  }
+  // A half domain's other side is drawn as a mirror image.
+  std::string text() const { return both_sides(dark_, "cells-dark") + both_sides(light_, "cells-light"); }
+
+ private:
+  struct Point {
+    Vec2<float> square;
+    double x = 0, y = 0;
+    bool above = false;
+  };
+
+  std::string both_sides(const PathData& data, std::string_view css_class) const {
+    if (data.empty()) return "";
+    std::string borders;
+    if (domain_.half) {
+      // Named by its content (FNV-1a), so that figures may share a page.
+      std::uint64_t hash = 0xcbf29ce484222325ULL;
+      for (const char c : data.text()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+      const std::string id = "c" + std::to_string(hash);
+      const std::string mirror = "matrix(1 0 0 -1 0 " + number(2 * place_.y) + ")";
+      borders = element("path", {{"id", id}, {"d", data.text()}}) +
+                element("use", {{"href", "#" + id}, {"transform", mirror}});
+    } else {
+      borders = element("path", {{"d", data.text()}});
+    }
+    return element("g", {{"class", css_class}}, borders) + "\n";
+  }
+
+  Point lifted(Vec2<float> p) const {
+    const Direction wi = lift(domain_, wo_, p).geometry.wi;
+    return {p, wi.x, wi.y, wi.z > 0};
+  }
+
+  void refine(const Point& a, const Point& b, int depth) {
+    const Point m = lifted({0.5f * (a.square.x + b.square.x), 0.5f * (a.square.y + b.square.y)});
+    const double bend = std::hypot(m.x - 0.5 * (a.x + b.x), m.y - 0.5 * (a.y + b.y)) * place_.radius;
+    const double length = std::hypot(b.x - a.x, b.y - a.y) * place_.radius;
+    const bool cut = a.above != b.above || a.above != m.above;
+    if (depth < 8 && (bend > 0.1 || length > 12 || cut)) {
+      refine(a, m, depth + 1);
+      refine(m, b, depth + 1);
+      return;
+    }
+    if (!a.above || !b.above) return;
+    const float v = background_.at(m.x, m.y);
+    const bool bright = range_.at(std::isnan(v) ? 0.0 : double(v)) > 0.62;
+    PathData& data = bright ? dark_ : light_;
+    if (latest_ != &data || last_x_ != a.x || last_y_ != a.y) data.move_to(place_.px(a.x), place_.py(a.y));
+    data.line_to(place_.px(b.x), place_.py(b.y));
+    latest_ = &data;
+    last_x_ = b.x;
+    last_y_ = b.y;
+  }
+
+  Domain domain_;
+  Direction wo_;
+  DiskPlace place_;
+  const DiskImage& background_;
+  Axis range_;
+  PathData dark_, light_;
+  PathData* latest_ = nullptr;
+  double last_x_ = 0, last_y_ = 0;
+};
+
+}  // namespace
+
+std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo, double x,
+                         double y, double radius, const DiskImage& background, const Axis& range) {
+  BorderPen pen(domain, wo, {x, y, radius}, background, range);
+  // Each inner node draws the line that halves its box: every border once.
+  std::vector<Cell> boxes{{-1, 1, domain.half ? 0.f : -1.f, 1}};
+  if (domain.half) pen.draw({-1, 0}, {1, 0});
+  for (const Split split : nodes) {
+    const Cell c = boxes.back();
+    boxes.pop_back();
+    if (split == Split::leaf) continue;
+    Cell lower_half = c, upper_half = c;
+    if (split == Split::x) {
+      lower_half.x1 = upper_half.x0 = 0.5f * (c.x0 + c.x1);
+      pen.draw({lower_half.x1, c.y0}, {lower_half.x1, c.y1});
+    } else {
+      lower_half.y1 = upper_half.y0 = 0.5f * (c.y0 + c.y1);
+      pen.draw({c.x0, lower_half.y1}, {c.x1, lower_half.y1});
+    }
+    boxes.push_back(upper_half);
+    boxes.push_back(lower_half);
+  }
+  return pen.text();
+}
+
+Figure target_figure(const DiskImage& target, Direction wo) {
+  const DiskPlace place;
+  const Axis range = log_range(target);
+  Figure figure = disk_figure("Target", wo);
+  figure.description =
+      "The reflectance that is sampled, over the projected disk of light directions, for a view at " +
+      angle_words(wo) + "; colours from " + pretty(range.lo) + " to " + pretty(range.hi) +
+      " per steradian on a log scale.";
+  figure.body += disk_raster(target, range, place.x, place.y, 2 * place.radius);
+  figure.body += disk_overlay(place, wo, DiskMarks::light_with_rings);
+  figure.body += bar_below(place, range, "target *t*(*ω*_o, *ω*_i) / sr⁻¹");
+  return figure;
+}
+
+Figure tree_figure(const SamplerData& data, Direction wo, const Axis& range) {
+  const DiskPlace place;
+  const std::size_t slab = slab_of(data.exact_partition, wo);
+  const MajorantTree& tree = data.exact.at(slab);
+  const std::string leaves = pretty(double(tree.mass.size()), 6);
+  const SlabBox box = slab_boxes(data.exact_partition).at(slab);
+  const auto degrees = [](float radians) { return number(double(radians) * 180 / pi_v<double>, 2) + "°"; };
+  Figure figure = disk_figure("Tree of " + leaves + " leaves", wo);
+  figure.description =
+      "The leaves of the exact-mode tree over the disk, coloured by their bound on the target, for a view "
+      "at " +
+      angle_words(wo) + "; domain " + name_of(data.domain.kind) + ", slab from " + degrees(box.lo[0]) +
+      " to " + degrees(box.hi[0]) + ".";
+  const DiskImage bound = bound_image(data, wo);
+  figure.body += disk_raster(bound, range, place.x, place.y, 2 * place.radius);
+  figure.body += cell_borders(tree.nodes, data.domain, wo, place.x, place.y, place.radius, bound, range);
+  figure.body += disk_overlay(place, wo, DiskMarks::light);
+  figure.body += bar_below(
+      place, range, "bound on *t* / sr⁻¹, slab *θ*_o = " + degrees(box.lo[0]) + " to " + degrees(box.hi[0]));
+  return figure;
+}
+
+Figure samples_figure(const DiskImage& target, Direction wo, std::span<const Direction> samples,
+                      std::size_t shown) {
+  const DiskPlace place;
+  const std::size_t n = std::min(shown, samples.size());
+  Figure figure = disk_figure(pretty(double(n), 6) + " samples", wo);
+  figure.description = "Sampled light directions as dots over the paled target, for a view at " +
+                       angle_words(wo) + ": dots are dense where the target is bright.";
+  const Axis range = log_range(target);
+  figure.body += disk_raster(target, range, place.x, place.y, 2 * place.radius, "pale");
+  PathData dots;
+  for (const Direction& wi : samples.first(n)) dots.dot(place.px(double(wi.x)), place.py(double(wi.y)));
+  figure.body += path(dots, "dots");
+  figure.body += disk_overlay(place, wo, DiskMarks::ink);
+  figure.body += bar_below(place, range, "dots per area ∝ *t*(*ω*_o, *ω*_i); behind them *t* / sr⁻¹");
+  return figure;
+}
+
+Figure thumbnail_figure(const AnyBrdf& f, const Target& target, Direction wo) {
+  const DiskImage image = target_image(f, target, wo, 96);
+  Figure figure{64, 64, "Target", "The target over the disk, seen at " + angle_words(wo) + ".", {}};
+  figure.body = disk_raster(image, log_range(image), 32, 32, 62) + circle(32, 32, 31, "rim");
+  return figure;
+}
+
+Figure square_figure(const SamplerData& data, Direction wo) {
+  const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
+  const std::vector<Cell> cells = leaf_cells(tree.nodes, data.domain);
+  std::vector<double> majorant(cells.size());
+  double mass = 0;
+  for (const std::uint32_t m : tree.mass) mass += m;
+  double hi = 0, lo = 1e300;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double area =
+        double(cells[i].x1 - cells[i].x0) * double(cells[i].y1 - cells[i].y0) / (data.domain.half ? 2 : 4);
+    majorant[i] = double(tree.volume) * tree.mass[i] / mass / area;
+    hi = std::max(hi, majorant[i]);
+    lo = std::min(lo, majorant[i] > 0 ? majorant[i] : lo);
+  }
+  const double width = 292, height = data.domain.half ? width / 2 : width, left = 34, top = 44;
+  Figure figure{disk_figure_width, top + height + 76, "The tree on its square", {}, {}};
+  figure.description = "The square of the domain " + std::string(name_of(data.domain.kind)) +
+                       " cut into leaves, coloured by their bounds.";
+  figure.body = disk_heading(figure.title, wo);
+  Axis range{std::max(lo, hi * 1e-5), std::max(hi, lo * 10), left, left + width, true};
+  Axis unit = range;
+  unit.from = 0;
+  unit.to = 1;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Cell& c = cells[i];
+    const double x = left + width * double(c.x0 + 1) / 2, w = width * double(c.x1 - c.x0) / 2;
+    const double y = top + width * double(1 - c.y1) / 2, h = width * double(c.y1 - c.y0) / 2;
+    const Rgb8 rgb = colour(unit.at(majorant[i]));
+    const std::string fill =
+        "rgb(" + std::to_string(rgb.r) + "," + std::to_string(rgb.g) + "," + std::to_string(rgb.b) + ")";
+    figure.body += element("rect", {{"x", number(x)},
+                                    {"y", number(y)},
+                                    {"width", number(w)},
+                                    {"height", number(h)},
+                                    {"fill", fill},
+                                    {"stroke", unit.at(majorant[i]) > 0.62 ? "#1a1030" : "#fff"},
+                                    {"stroke-width", ".4"},
+                                    {"stroke-opacity", ".5"}});
+  }
+  figure.body += "\n" + colour_bar({range, top + height + 20, 8, "bound on the normalised target *T* / *â*"});
+  return figure;
+}
+
+}  // namespace reflectree::draw
