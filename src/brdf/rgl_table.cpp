@@ -56,7 +56,7 @@ Slice integrate(const float* density, int width, int height) {
 }  // namespace
 
 RglTable::RglTable(const RglFields& fields)
-    : name_(fields.name),
+    : name(fields.name),
       theta_o_(fields.theta_o),
       sigma_(fields.sigma),
       ndf_(fields.ndf),
@@ -157,7 +157,7 @@ Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
 
 BrdfTraits RglTable::traits() const {
   BrdfTraits traits;
-  traits.name = name_;
+  traits.name = name;
   traits.theta_o_knots = theta_o_;
   return traits;
 }

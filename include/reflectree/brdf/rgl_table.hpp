@@ -37,6 +37,7 @@ class RglTable {
   Rgb operator()(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
 
+  std::string name;
   // How many entries of a file were negative and read as 0.
   std::uint64_t clamped = 0;
 
@@ -51,7 +52,6 @@ class RglTable {
   struct ColourNode {
     float rgb[2][4];
   };
-  std::string name_;
   std::vector<float> theta_o_, sigma_, ndf_;
   std::vector<WarpNode> warp_;  // [theta_o pair][v][u]
   std::vector<WarpRow> rows_;   // [theta_o pair][v]

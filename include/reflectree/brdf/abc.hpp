@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "reflectree/brdf/brdf.hpp"
+
+namespace reflectree {
+
+// ABC microfacet model: f = kd / pi + F S G / (pi cos_o cos_i) with S = A / (1 + B (1 - cos theta_h))^C,
+// G of Cook and Torrance 1982, F the Fresnel equation of an unpolarised dielectric.
+// Löw, Kronander, Ynnerman, Unger 2012, "BRDF Models for Accurate and Efficient Rendering of Glossy
+// Surfaces".
+struct AbcMicrofacet {
+  std::string name = "abc";
+  Rgb kd, a;
+  float b = 0, c = 1, ior = 1.5f;
+
+  template <class T>
+  RgbT<T> operator()(const ShadingGeometry<T>& g) const {
+    // 1 - cos theta_h = sin^2 theta_h / (1 + cos theta_h), without cancellation at the peak.
+    const T versine = sin2_theta(g.wh) / (T(1) + g.cos_theta_h);
+    const T lobe = exp(-T(c) * log(T(1) + T(b) * versine));
+    const T facing = T(2) * g.cos_theta_h / g.cos_theta_d;
+    const T masking = min(T(1), facing * min(g.cos_theta_o, g.cos_theta_i));
+    const T specular = fresnel(g.cos_theta_d) * lobe * masking / (pi_v<T> * g.cos_theta_o * g.cos_theta_i);
+    return T(1) / pi_v<T> * lift<T>(kd) + specular * lift<T>(a);
+  }
+  BrdfTraits traits() const {
+    BrdfTraits traits;
+    traits.name = name;
+    return traits;
+  }
+
+ private:
+  // The mean of both polarisations: Cook and Torrance 1982, with g^2 = ior^2 + cos^2 - 1; ior >= 1.
+  template <class T>
+  T fresnel(T cosine) const {
+    const T n2 = T(ior) * T(ior);
+    const T root = sqrt(max(n2 + sqr(cosine) - T(1), T(0)));
+    const T perpendicular = (cosine - root) / (cosine + root);
+    const T parallel = (n2 * cosine - root) / (n2 * cosine + root);
+    return T(0.5f) * (sqr(perpendicular) + sqr(parallel));
+  }
+};
+
+}  // namespace reflectree

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// An isotropic BRDF tabulated over half-angle coordinates (theta_h, theta_d, phi_d), finer in theta_h
+// towards the mirror direction. With 90 x 90 x 180 cells it is a material of the MERL database: Matusik et
+// al. 2003, "A Data-Driven Reflectance Model".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "reflectree/brdf/brdf.hpp"
+#include "reflectree/math/half_angle.hpp"
+
+namespace reflectree {
+
+enum class TableLookup {
+  nearest,  // the cell that holds the pair, as MERL's own reader does: piecewise constant
+  linear,   // trilinear between cell centres; phi_d wraps
+};
+
+// f(wo, wi) in sr^-1, Rgb. Cell (h, d, p) spans, in units of its index,
+//   n_h sqrt(theta_h / (pi/2)), n_d theta_d / (pi/2), n_p phi_d / period,
+// where period is pi for a reciprocal table and 2 pi otherwise.
+struct HalfAngleTable {
+  std::string name = "table";
+  int n_h = 0, n_d = 0, n_p = 0;
+  bool reciprocal = true;
+  TableLookup lookup = TableLookup::nearest;
+  std::vector<float> rgb;     // [h][d][p][3], never negative
+  std::uint64_t clamped = 0;  // entries that were negative in a file and are 0 here
+
+  Rgb operator()(const ShadingGeometry<float>& g) const;
+  BrdfTraits traits() const;
+};
+
+// Where a cell is baked: its centre, pulled towards theta_d = 0 where the centre has a direction below
+// the horizon, so that cells which the horizon cuts hold a value of the part above. phi_h = 0.
+DirectionPair<float> cell_centre(const HalfAngleTable& table, int h, int d, int p);
+
+}  // namespace reflectree

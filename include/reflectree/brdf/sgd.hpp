@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "reflectree/brdf/brdf.hpp"
+
+namespace reflectree {
+
+// The parameters of one colour channel.
+struct SgdChannel {
+  float kd = 0, ks = 0;                             // diffuse and specular weight
+  float alpha = 0.1f, p = 1, kappa = 1;             // distribution of normals: width, tail, scale
+  float f0 = 1, f1 = 0;                             // Fresnel
+  float lambda = 0, log_c = 0, k = 1, theta_0 = 0;  // masking; log_c = ln c: c itself overflows a float
+};
+
+// Shifted Gamma distribution: f = (kd + ks F D G(theta_o) G(theta_i) / (cos_o cos_i)) / pi per channel.
+// Bagher, Soler, Holzschuch 2012, "Accurate fitting of measured reflectances using a Shifted Gamma
+// micro-facet distribution", eqs. 8-12. Where the fitted Fresnel term turns negative it counts as 0.
+struct Sgd {
+  std::string name = "sgd";
+  SgdChannel channels[3];
+
+  template <class T>
+  RgbT<T> operator()(const ShadingGeometry<T>& g) const {
+    const T cos2_h = max(sqr(g.cos_theta_h), T(1e-12f));
+    const T theta_o = polar_angle(g.wo), theta_i = polar_angle(g.wi);
+    const Common<T> common{sin2_theta(g.wh) / cos2_h,
+                           T(-2) * log(cos2_h),
+                           power5(T(1) - g.cos_theta_d),
+                           g.cos_theta_d,
+                           theta_o,
+                           theta_i,
+                           T(1) / (g.cos_theta_o * g.cos_theta_i)};
+    return {value(channels[0], common), value(channels[1], common), value(channels[2], common)};
+  }
+  BrdfTraits traits() const {
+    BrdfTraits traits;
+    traits.name = name;
+    return traits;
+  }
+
+ private:
+  template <class T>
+  struct Common {
+    T tan2_h, log_inverse_cos4_h, fresnel_power, cos_theta_d, theta_o, theta_i, inverse_cosines;
+  };
+  template <class T>
+  static T power5(T x) {
+    return sqr(sqr(x)) * x;
+  }
+  template <class T>
+  static T polar_angle(Vec3<T> w) {
+    return atan2(sqrt(sin2_theta(w)), w.z);
+  }
+  // Exponents are kept within [-80, 80]: results below are as good as 0, and subnormal floats are slow.
+  template <class T>
+  static T bounded_exp(T x) {
+    return exp(clamp(x, T(-80.f), T(80.f)));
+  }
+  // D = kappa exp(-x) / (pi x^p cos^4 theta_h), x = alpha + tan^2 theta_h / alpha.
+  template <class T>
+  static T distribution(const SgdChannel& c, const Common<T>& common) {
+    const T x = T(c.alpha) + common.tan2_h / T(c.alpha);
+    return T(c.kappa) / pi_v<T> * bounded_exp(common.log_inverse_cos4_h - x - T(c.p) * log(x));
+  }
+  // G = clamp(1 + lambda (1 - exp(c max(theta - theta_0, 0)^k)), 0, 1), the power taken as an exponential;
+  // beyond exp(4.4) = 81 the outer exponential has long brought G to 0 and would soon overflow.
+  template <class T>
+  static T masking(const SgdChannel& c, T theta) {
+    const T x = max(theta - T(c.theta_0), T(1e-30f));
+    const T power = bounded_exp(min(T(c.log_c) + T(c.k) * log(x), T(4.4f)));
+    return clamp(T(1) + T(c.lambda) * (T(1) - exp(power)), T(0), T(1));
+  }
+  template <class T>
+  static T value(const SgdChannel& c, const Common<T>& common) {
+    const T fresnel = T(c.f0) - common.cos_theta_d * T(c.f1) + (T(1) - T(c.f0)) * common.fresnel_power;
+    const T facets = max(fresnel, T(0)) * distribution(c, common) * masking(c, common.theta_o) *
+                     masking(c, common.theta_i) * common.inverse_cosines;
+    return (T(c.kd) + T(c.ks) * facets) / pi_v<T>;
+  }
+};
+
+}  // namespace reflectree

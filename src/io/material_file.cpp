@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/io/material_file.hpp"
+
+#include <cmath>
+
+#include "reflectree/brdf/material.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/io/merl.hpp"
+#include "reflectree/io/model_tables.hpp"
+#include "reflectree/io/rgl.hpp"
+
+namespace reflectree {
+namespace {
+
+constexpr std::uint64_t max_material_bytes = max_merl_bytes;
+static_assert(max_rgl_bytes <= max_material_bytes && max_parameter_table_bytes <= max_material_bytes);
+
+enum class Kind { rgl, merl, table };
+
+Kind kind_of(ByteView bytes, const std::string& path) {
+  if (bytes.empty()) throw Error("empty", path, "fetch the file again");
+  if (is_tensor_file(bytes)) return Kind::rgl;
+  if (is_merl_file(bytes)) return Kind::merl;
+  if (is_parameter_table(bytes)) return Kind::table;
+  throw Error("not a material", path,
+              "name an RGL tensor_file, a MERL .binary, or a CSV of NBRDF, SGD or ABC materials");
+}
+
+AnyBrdf read_table_member(ByteView bytes, const std::string& path, const std::string& member) {
+  const ParameterTable table = read_parameter_table(bytes, path);
+  const ParameterTable::Row& row = table.row(member);
+  const std::string name = to_text(Material{{{1, "", {}, path, row.material}}});
+  switch (model_of(table)) {
+    case TableModel::neural:
+      return make_neural(table, row, name);
+    case TableModel::sgd:
+      return make_sgd(table, row, name);
+    case TableModel::abc:
+      return make_abc(table, row, name);
+  }
+  throw Error("no model for its columns", path, "see the documentation for what is read");
+}
+
+}  // namespace
+
+AnyBrdf read_brdf(ByteView bytes, const std::string& path, const std::string& member) {
+  const std::string name = to_text(Material{{{1, "", {}, path, member}}});
+  switch (kind_of(bytes, path)) {
+    case Kind::rgl: {
+      if (!member.empty()) {
+        throw Error("no member '" + member + "': the file is one material", path, "leave out #" + member);
+      }
+      RglTable table = read_rgl(bytes, path);
+      table.name = name;
+      return table;
+    }
+    case Kind::merl: {
+      if (!member.empty() && member != "nearest" && member != "linear") {
+        throw Error("no member '" + member + "'", path, "its look-ups are #nearest and #linear");
+      }
+      HalfAngleTable table =
+          read_merl(bytes, path, member == "linear" ? TableLookup::linear : TableLookup::nearest);
+      table.name = name;
+      return table;
+    }
+    case Kind::table:
+      return read_table_member(bytes, path, member);
+  }
+  throw Error("not a material", path, "name a file of measured or fitted materials");
+}
+
+AnyBrdf load_brdf(const std::string& path, const std::string& member) {
+  return read_brdf(read_file(path, max_material_bytes), path, member);
+}
+
+std::vector<std::string> list_members(const std::string& path) {
+  const Bytes bytes = read_file(path, max_material_bytes);
+  switch (kind_of(bytes, path)) {
+    case Kind::rgl:
+      return {};
+    case Kind::merl:
+      return {"nearest", "linear"};
+    case Kind::table:
+      break;
+  }
+  std::vector<std::string> names;
+  for (const ParameterTable::Row& row : read_parameter_table(bytes, path).rows) names.push_back(row.material);
+  return names;
+}
+
+}  // namespace reflectree
