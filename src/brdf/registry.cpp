@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/brdf/registry.hpp"
 
-#include <numeric>
+#include <algorithm>
 
+#include "reflectree/brdf/baked_tables.hpp"
+#include "reflectree/brdf/edit_distance.hpp"
 #include "reflectree/brdf/models/ashikhmin_shirley.hpp"
 #include "reflectree/brdf/models/cook_torrance.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
@@ -43,20 +45,14 @@ ModelInfo entry() {
   return info;
 }
 
-// Levenshtein's distance, one row at a time.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
+// A table without parameters, computed when it is asked for.
+template <std::size_t index>
+ModelInfo baked_entry() {
+  const BakedTable& table = baked_tables()[index];
+  ModelInfo info{table.name, ModelClass::approximate, table.summary, "computed", {}, {}, {}};
+  info.fault = [](std::span<const Rgb>) -> const char* { return nullptr; };
+  info.make = [](std::span<const Rgb>) -> AnyBrdf { return bake_table(baked_tables()[index].name); };
+  return info;
 }
 
 }  // namespace
@@ -77,7 +73,8 @@ std::span<const ModelInfo> models() {
   static const std::vector<ModelInfo> all = {
       entry<Lambert>(), entry<OrenNayar>(),        entry<Phong>(),        entry<Lafortune>(),
       entry<Ward>(),    entry<AshikhminShirley>(), entry<CookTorrance>(), entry<Ggx>(),
-      entry<Plastic>(), entry<RetroReflector>(),   entry<LowSmooth>(),
+      entry<Plastic>(), entry<RetroReflector>(),   entry<LowSmooth>(),    baked_entry<0>(),
+      baked_entry<1>(), baked_entry<2>(),
   };
   return all;
 }
