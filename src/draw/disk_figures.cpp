@@ -39,6 +39,12 @@ class BorderPen {
     range_.to = 1;
   }
 
+  // Not drawn: borders between halves (centres p and q) that are less than a unit apart.
+  bool worth_drawing(Vec2<float> p, Vec2<float> q) const {
+    const Point a = lifted(p), b = lifted(q);
+    return std::hypot(b.x - a.x, b.y - a.y) * place_.radius >= 1;
+  }
+
   void draw(Vec2<float> a, Vec2<float> b) {
     constexpr int pieces = 4;  // at least: the square's diagonals are kinks of its map to the disk
     Point from = lifted(a);
@@ -79,7 +85,7 @@ class BorderPen {
 
   Point lifted(Vec2<float> p) const {
     const Direction wi = lift(domain_, wo_, p).geometry.wi;
-    return {p, wi.x, wi.y, wi.z > 0};
+    return {p, wi.x, wi.y, wi.z > -1e-4f};  // the horizon itself is drawn
   }
 
   void refine(const Point& a, const Point& b, int depth) {
@@ -126,12 +132,14 @@ std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, 
     boxes.pop_back();
     if (split == Split::leaf) continue;
     Cell lower_half = c, upper_half = c;
-    if (split == Split::x) {
-      lower_half.x1 = upper_half.x0 = 0.5f * (c.x0 + c.x1);
-      pen.draw({lower_half.x1, c.y0}, {lower_half.x1, c.y1});
-    } else {
-      lower_half.y1 = upper_half.y0 = 0.5f * (c.y0 + c.y1);
-      pen.draw({c.x0, lower_half.y1}, {c.x1, lower_half.y1});
+    const bool along_x = split == Split::x;
+    const Vec2<float> centre{0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)};
+    (along_x ? lower_half.x1 : lower_half.y1) = along_x ? centre.x : centre.y;
+    (along_x ? upper_half.x0 : upper_half.y0) = along_x ? centre.x : centre.y;
+    const Vec2<float> step =
+        along_x ? Vec2<float>{0.25f * (c.x1 - c.x0), 0} : Vec2<float>{0, 0.25f * (c.y1 - c.y0)};
+    if (pen.worth_drawing({centre.x - step.x, centre.y - step.y}, {centre.x + step.x, centre.y + step.y})) {
+      along_x ? pen.draw({centre.x, c.y0}, {centre.x, c.y1}) : pen.draw({c.x0, centre.y}, {c.x1, centre.y});
     }
     boxes.push_back(upper_half);
     boxes.push_back(lower_half);

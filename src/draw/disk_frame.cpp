@@ -36,7 +36,8 @@ std::string disk_overlay(const DiskPlace& place, Direction wo, DiskMarks marks) 
   const bool ink = marks == DiskMarks::ink;
   for (const char* css : {ink ? "paper-edge" : "mark-edge", ink ? "ink-mark" : "mark"}) {
     out += circle(x, place.y, 4.5, css);
-    if (wo.x > 0.02f) out += path(cross, css);  // at the pole ring and cross would coincide
+    // A cross would hide a tree's or a sample's densest part; at the pole it would coincide with the ring.
+    if (marks == DiskMarks::light_with_rings && wo.x > 0.02f) out += path(cross, css);
   }
   return out + label(x, place.y - 9, "*ω*_o", Anchor::middle, ink ? "over-ink" : "over");
 }

@@ -19,8 +19,8 @@ inline constexpr double disk_figure_width = 360, disk_figure_height = 412;
 std::string theta_o_text(Direction wo);
 // Title on the left, theta_o on the right.
 std::string disk_heading(const std::string& title, Direction wo);
-// The rim, a ring at wo, a cross at its mirror image; over bright or dark colours (with rings at
-// theta_i = 30 and 60 degrees) or in ink over a pale picture.
+// The rim and a ring at wo, over colours (with rings at theta_i = 30 and 60 degrees and a cross at wo's
+// mirror image) or in ink over a pale picture.
 enum class DiskMarks { light, light_with_rings, ink };
 std::string disk_overlay(const DiskPlace& place, Direction wo, DiskMarks marks);
 
