@@ -70,12 +70,24 @@ const char* name_of(ModelClass model_class) {
 }
 
 std::span<const ModelInfo> models() {
+  // clang-format off
   static const std::vector<ModelInfo> all = {
-      entry<Lambert>(), entry<OrenNayar>(),        entry<Phong>(),        entry<Lafortune>(),
-      entry<Ward>(),    entry<AshikhminShirley>(), entry<CookTorrance>(), entry<Ggx>(),
-      entry<Plastic>(), entry<RetroReflector>(),   entry<LowSmooth>(),    baked_entry<0>(),
-      baked_entry<1>(), baked_entry<2>(),
+      entry<Lambert>(),
+      entry<OrenNayar>(),
+      entry<Phong>(),
+      entry<Lafortune>(),
+      entry<Ward>(),
+      entry<AshikhminShirley>(),
+      entry<CookTorrance>(),
+      entry<Ggx>(),
+      entry<Plastic>(),
+      entry<RetroReflector>(),
+      entry<LowSmooth>(),
+      baked_entry<0>(),
+      baked_entry<1>(),
+      baked_entry<2>(),
   };
+  // clang-format on
   return all;
 }
 

@@ -3,7 +3,6 @@
 
 #include "reflectree/brdf/description.hpp"
 #include "reflectree/brdf/models/fresnel.hpp"
-#include "reflectree/brdf/models/lobe.hpp"
 
 namespace reflectree {
 
@@ -18,15 +17,18 @@ struct AshikhminShirley {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    // hz^e = (1 - s2)^(e/2); the exponent has the limit 0/0 at the pole, where s2 is kept positive.
-    const T s2 = clamp(sin2_theta(g.wh), T(1e-30), T(1));
-    const T exponent = (T(n_x) * sqr(g.wh.x) + T(n_y) * sqr(g.wh.y)) / s2;
+    // hz^e with hz^2 = 1 / (1 + tan^2): precise at the pole and at the rim. e, a mean of n_x and n_y, is 0/0
+    // at the pole, where the power is 1 whatever e is.
+    const T s2 = sin2_theta(g.wh);
+    const T tan2 = s2 / max(sqr(g.cos_theta_h), T(1e-18));
+    const T mean = (T(n_x) * sqr(g.wh.x) + T(n_y) * sqr(g.wh.y)) / max(s2, T(1e-30));
+    const T exponent = clamp(mean, min(T(n_x), T(n_y)), max(T(n_x), T(n_y)));
+    const T power = exp(T(-0.5) * exponent * log1p(tan2));
     const T scale = sqrt((T(n_x) + T(1)) * (T(n_y) + T(1))) / (T(8) * pi_v<T>);
-    const T lobe =
-        scale * cos_power(s2, T(0.5) * exponent) / (g.cos_theta_d * max(g.cos_theta_o, g.cos_theta_i));
+    const T lobe = scale * power / (g.cos_theta_d * max(g.cos_theta_o, g.cos_theta_i));
 
-    const T white = T(28) / (T(23) * pi_v<T>)*(T(1) - schlick_power(T(0.5) * g.cos_theta_o)) *
-                    (T(1) - schlick_power(T(0.5) * g.cos_theta_i));
+    const T white = T(28) / (T(23) * pi_v<T>)*schlick_complement(T(0.5) * g.cos_theta_o) *
+                    schlick_complement(T(0.5) * g.cos_theta_i);
     const Rgb under = kd * (Rgb{1, 1, 1} - f0);
     return white * lift<T>(under) + lobe * fresnel_schlick(f0, g.cos_theta_d);
   }

@@ -14,6 +14,14 @@ T schlick_power(T c) {
   return m2 * m2 * m;
 }
 
+// 1 - (1 - c)^5 = c (1 + m + m^2 + m^3 + m^4), m = 1 - c: precise at grazing, where 1 - schlick_power
+// cancels.
+template <class T>
+T schlick_complement(T c) {
+  const T m = max(T(1) - c, T(0));
+  return c * (T(1) + m * (T(1) + m * (T(1) + m * (T(1) + m))));
+}
+
 // F_schlick = f0 + (1 - f0)(1 - cos theta_d)^5. Schlick 1994, eq. 15.
 template <class T>
 RgbT<T> fresnel_schlick(Rgb f0, T cos_theta_d) {

@@ -20,8 +20,8 @@ struct Plastic {
     const T coat = (f + (T(1) - f) * schlick_power(g.cos_theta_d)) * ggx_distribution(g.wh, T(alpha)) *
                    ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha));
     // 1 - F(c) = (1 - f0) (1 - (1 - c)^5).
-    const T base = sqr(T(1) - f) / pi_v<T> * (T(1) - schlick_power(g.cos_theta_o)) *
-                   (T(1) - schlick_power(g.cos_theta_i));
+    const T base =
+        sqr(T(1) - f) / pi_v<T> * schlick_complement(g.cos_theta_o) * schlick_complement(g.cos_theta_i);
     return base * lift<T>(kd) + RgbT<T>{coat, coat, coat};
   }
 

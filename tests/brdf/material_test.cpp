@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/brdf/material.hpp"
+
+#include <gtest/gtest.h>
+
+#include <locale>
+
+#include "all_models.hpp"
+#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/brdf/registry.hpp"
+#include "reflectree/error.hpp"
+
+namespace reflectree {
+namespace {
+
+std::string canonical(std::string_view text) { return to_text(parse_material(text)); }
+
+std::string error_of(std::string_view text) {
+  try {
+    parse_material(text);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(Material, PrintsItsCanonicalForm) {
+  EXPECT_EQ(canonical("0.3*lambert:rho=0.5 + ggx:alpha=0.1,f0=1/0.8/0.3"),
+            "0.3*lambert:rho=0.5 + ggx:alpha=0.1,f0=1/0.8/0.3");
+  EXPECT_EQ(canonical(" ggx "), "ggx:alpha=0.1,f0=1/0.8/0.3");
+  EXPECT_EQ(canonical("ggx : f0 = .5 / 5e-1 / +0.50 , alpha = 1"), "ggx:alpha=1,f0=0.5");
+  EXPECT_EQ(canonical("1*lambert+2.50*lambert:rho=1"), "lambert:rho=0.5 + 2.5*lambert:rho=1");
+  EXPECT_EQ(canonical("phong:kd=-0,n=1e6"), "phong:kd=0,ks=0.6,n=1e+06");
+}
+
+TEST(Material, APairIsSetTogether) {
+  EXPECT_EQ(canonical("ward:alpha=0.3"), "ward:kd=0.2,ks=0.6,alpha=0.3");
+  EXPECT_EQ(canonical("ward:alpha_y=0.3"), "ward:kd=0.2,ks=0.6,alpha_x=0.15,alpha_y=0.3");
+  EXPECT_TRUE(make_brdf(parse_material("ward:alpha=0.3")).traits().isotropic);
+  EXPECT_FALSE(make_brdf(parse_material("ward:alpha_y=0.3")).traits().isotropic);
+}
+
+TEST(Material, AWordWithAMarkIsAFile) {
+  const Material m =
+      parse_material("0.5*dir/a-b.bsdf + ./x#chm_mint + \"a b+c\\\"\\\\\"#\"m 1\" + lambert#m");
+  ASSERT_EQ(m.terms.size(), 4U);
+  EXPECT_EQ(m.terms[0].path, "dir/a-b.bsdf");
+  EXPECT_EQ(m.terms[0].weight, 0.5f);
+  EXPECT_EQ(m.terms[1].path, "./x");
+  EXPECT_EQ(m.terms[1].member, "chm_mint");
+  EXPECT_EQ(m.terms[2].path, "a b+c\"\\");
+  EXPECT_EQ(m.terms[2].member, "m 1");
+  EXPECT_EQ(m.terms[3].path, "lambert");
+  EXPECT_EQ(parse_material(to_text(m)), m);
+}
+
+TEST(Material, ABareExistingPathIsAFileWhateverItContains) {
+  const FileExists exists = [](const std::string& path) {
+    return path == "my + file" || path == "0.3*x#y" || path == "mat";
+  };
+  EXPECT_EQ(parse_material("my + file", exists).terms.at(0).path, "my + file");
+  EXPECT_EQ(parse_material("my + file#gold", exists).terms.at(0).member, "gold");
+  EXPECT_EQ(parse_material("0.3*x#y", exists).terms.at(0).path, "0.3*x#y");
+  EXPECT_EQ(parse_material("0.5*mat + lambert", exists).terms.at(0).path, "mat");
+  EXPECT_THROW(parse_material("my + file"), Error);
+  for (const char* text : {"my + file", "my + file#gold", "0.3*x#y", "0.5*mat + lambert"}) {
+    const Material m = parse_material(text, exists);
+    EXPECT_EQ(parse_material(to_text(m)), m) << text;
+  }
+}
+
+TEST(Material, EveryModelIsListedWithADefaultThatPrintsAndParses) {
+  for (const ModelInfo& model : models()) {
+    const Material m = parse_material(model.name);
+    EXPECT_EQ(parse_material(to_text(m)), m);
+    EXPECT_EQ(make_brdf(m).traits().name, to_text(m));
+    EXPECT_FALSE(model.summary.empty() || model.source.empty());
+    EXPECT_EQ(&nearest_model(std::string(model.name) + "x"), &model);
+  }
+}
+
+template <class M>
+void expect_model_survives_text(Pcg32& bits) {
+  const M model = random_model<M>(bits);
+  const std::string text = model.traits().name;
+  const Material m = parse_material(text);
+  EXPECT_EQ(to_text(m), text);
+  const AnyBrdf any = make_brdf(m);
+  EXPECT_EQ(any.traits().name, text);
+  const ShadingGeometry<float> g = shading_geometry(random_direction(bits), random_direction(bits));
+  EXPECT_EQ(to_rgb(any(g)), eval(model, g)) << text;
+}
+
+TEST(Material, RandomModelsSurviveText) {
+  Pcg32 bits(1);
+  for (int i = 0; i < 50; ++i) {
+    expect_model_survives_text<Lambert>(bits);
+    expect_model_survives_text<OrenNayar>(bits);
+    expect_model_survives_text<Phong>(bits);
+    expect_model_survives_text<Lafortune>(bits);
+    expect_model_survives_text<Ward>(bits);
+    expect_model_survives_text<AshikhminShirley>(bits);
+    expect_model_survives_text<CookTorrance>(bits);
+    expect_model_survives_text<Ggx>(bits);
+    expect_model_survives_text<Plastic>(bits);
+    expect_model_survives_text<RetroReflector>(bits);
+    expect_model_survives_text<LowSmooth>(bits);
+  }
+}
+
+// Random words of the grammar, glued at random: whatever parses must be stable; most of it does not.
+TEST(Material, WhateverParsesIsStable) {
+  const char* words[] = {"lambert", "ggx",  "ward",      ":",       ",",         "=",          "+",
+                         "*",       "#",    "/",         "\"",      "\\",        " ",          "0.3",
+                         "1",       "2e-1", "alpha=0.2", "rho=0.5", "f0=1/.5/0", "alpha_x=.5", "a/b",
+                         "x.bsdf",  "m",    "-",         "\xc3\xb6"};
+  Pcg32 bits(2);
+  int parsed = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    std::string text;
+    const int count = 1 + int(bits() % 8);
+    for (int w = 0; w < count; ++w) text += words[bits() % std::size(words)];
+    try {
+      const Material m = parse_material(text);
+      ++parsed;
+      const std::string printed = to_text(m);
+      ASSERT_EQ(parse_material(printed), m) << text;
+      ASSERT_EQ(canonical(printed), printed) << text;
+    } catch (const Error&) {
+    }
+  }
+  EXPECT_GT(parsed, 5000);
+}
+
+TEST(Material, ErrorsSayWhatWhereAndHow) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "column 1: expected a model or a file, found end"},
+      {"lamber", "column 1: unknown model 'lamber'; did you mean 'lambert'?"},
+      {"0.3*lamber", "column 5: unknown model"},
+      {"ggx:beta=1", "column 5: unknown parameter 'beta'; ggx has alpha, f0"},
+      {"ggx:", "column 5: expected a parameter, found end; ggx has alpha, f0"},
+      {"ggx:alpha", "column 10: missing value of alpha"},
+      {"ggx:alpha=", "column 11: expected a number, found end"},
+      {"ggx:alpha=nan", "column 11: expected a number, found 'nan'"},
+      {"ggx:alpha=inf", "column 11: expected a number, found 'inf'"},
+      {"ggx:alpha=1e99", "column 11: alpha is out of range; alpha must lie between 0.001 and 1"},
+      {"ggx:alpha=2", "column 11: alpha is out of range"},
+      {"oren_nayar:sigma=2", "sigma must lie between 0 and 1.5707964 rad"},
+      {"ggx:f0=1/2/0", "column 8: f0 is out of range"},
+      {"ggx:f0=1/1", "column 11: expected '/', found end; give one number, or three"},
+      {"ggx:alpha=1/1/1", "alpha takes one number"},
+      {"ggx:alpha=1,alpha=1", "column 13: parameter 'alpha' is given twice"},
+      {"ward:alpha=1,alpha_y=1", "column 14: parameter 'alpha_y' is given twice"},
+      {"ggx lambert", "column 5: unexpected 'lambert'; join terms with '+'"},
+      {"ggx +", "column 6: expected a model or a file, found end"},
+      {"ggx:alpha=0.1.2", "column 14: unexpected '.2'"},
+      {"0*ggx", "column 1: weight out of range"},
+      {"-1*ggx", "column 1: weight out of range"},
+      {"1e9*ggx", "column 1: weight out of range"},
+      {"0.3", "column 1: a number without a model; write WEIGHT*MODEL"},
+      {"phong:kd=0.7,ks=0.5", "column 1: parameters of phong do not fit together; kd + ks must not exceed 1"},
+      {"x.bsdf:a=1", "a file takes no parameters"},
+      {"x.bsdf#", "missing member after '#'"},
+      {"\"x", "without its closing one"},
+      {"\"\"", "an empty path"},
+      {"ggx\n", "column 4: contains a control character"},
+  };
+  for (const auto& [text, message] : cases) {
+    EXPECT_NE(error_of(text).find(message), std::string::npos) << text << " gave: " << error_of(text);
+  }
+  std::string many = "ggx";
+  for (int i = 0; i < 16; ++i) many += "+ggx";
+  EXPECT_NE(error_of(many).find("too many terms; use at most 16"), std::string::npos);
+  EXPECT_NE(error_of(std::string(5000, ' ')).find("longer than 4096 bytes"), std::string::npos);
+}
+
+TEST(Material, MakesSumsAndLoadsFiles) {
+  const FileLoader load = [](const std::string& path, const std::string& member) -> AnyBrdf {
+    EXPECT_EQ(path + "|" + member, "a.bsdf|gold");
+    return Lambert{{1, 1, 1}};
+  };
+  const AnyBrdf any = make_brdf(parse_material("0.5*a.bsdf#gold + lambert:rho=0.5"), load);
+  EXPECT_EQ(any.traits().name, "0.5*a.bsdf#gold + lambert:rho=0.5");
+  const Direction w{0, 0, 1};
+  EXPECT_FLOAT_EQ(any(shading_geometry(w, w))[0], 1 / pi);
+  EXPECT_EQ(make_brdf(parse_material("a.bsdf#gold"), load).traits().name, "a.bsdf#gold");
+  EXPECT_THROW(make_brdf(parse_material("a.bsdf")), Error);
+  EXPECT_THROW(make_brdf(Material{}), Error);
+  EXPECT_THROW(make_brdf({{{1, "ggx", {{7, 7, 7}, {1, 1, 1}}, "", ""}}}), Error);
+  EXPECT_THROW(make_brdf({{{1, "ggx", {}, "", ""}}}), Error);
+  EXPECT_THROW(make_brdf({{{1, "no_model", {}, "", ""}}}), Error);
+}
+
+TEST(NumberText, IsShortestAndReadsBack) {
+  EXPECT_EQ(shortest_text(0.1f), "0.1");
+  EXPECT_EQ(shortest_text(50), "50");
+  EXPECT_EQ(shortest_text(123456), "123456");
+  EXPECT_EQ(shortest_text(1e6f), "1e+06");
+  EXPECT_EQ(shortest_text(1.f / 3), "0.33333334");
+  Pcg32 bits(3);
+  for (int i = 0; i < 20'000; ++i) {
+    const float x = float(std::pow(10.0, -44 + 82 * uniform(bits)));
+    std::string_view text;
+    const std::string stored = shortest_text(x);
+    text = stored;
+    EXPECT_EQ(take_number(text), x);
+    EXPECT_TRUE(text.empty());
+  }
+}
+
+TEST(NumberText, DoesNotAskTheLocale) {
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  const std::string text = canonical("0.5*phong:n=1234.5");
+  std::locale::global(before);
+  EXPECT_EQ(text, "0.5*phong:kd=0.2,ks=0.6,n=1234.5");
+}
+
+TEST(NumberText, TakesWhatIsANumberAndNoMore) {
+  std::string_view text = "1e+x";
+  EXPECT_EQ(take_number(text), 1.f);
+  EXPECT_EQ(text, "e+x");
+  for (std::string_view none : {"", ".", "+", "-.", "e5", "nan", "inf", "x1"}) {
+    std::string_view rest = none;
+    EXPECT_EQ(take_number(rest), std::nullopt);
+    EXPECT_EQ(rest, none);
+  }
+  text = "1e999999999999";
+  EXPECT_EQ(take_number(text), std::numeric_limits<float>::infinity());
+  text = "-1e99";
+  EXPECT_EQ(take_number(text), -std::numeric_limits<float>::infinity());
+  text = "1e-99999";
+  EXPECT_EQ(take_number(text), 0.f);
+}
+
+}  // namespace
+}  // namespace reflectree

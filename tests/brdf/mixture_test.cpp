@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/brdf/mixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include "all_models.hpp"
+#include "reflectree/error.hpp"
+
+namespace reflectree {
+namespace {
+
+// A grey and a five-channel function, with knots, for the rules of combination.
+struct Grey {
+  float operator()(Direction wo, Direction wi) const { return wo.z + wi.z; }
+  BrdfTraits traits() const {
+    BrdfTraits t;
+    t.name = "grey";
+    t.concurrent = false;
+    t.theta_o_knots = {0.25f, 0.5f};
+    return t;
+  }
+};
+struct Five {
+  Spectrum operator()(Direction wo, Direction) const {
+    Spectrum s(5);
+    for (int c = 0; c < 5; ++c) s[c] = wo.z * float(c);
+    return s;
+  }
+  BrdfTraits traits() const {
+    BrdfTraits t;
+    t.name = "five";
+    t.channels = 5;
+    t.isotropic = false;
+    t.theta_o_knots = {0.5f, 1.f};
+    return t;
+  }
+};
+
+std::vector<Pair> many_pairs() {
+  Pcg32 bits(1);
+  return test_pairs(400, bits);  // several blocks
+}
+
+TEST(Mixture, IsTheSumOfItsTermsInEveryForm) {
+  const Lambert a{{0.5f, 0.25f, 1.f}};
+  const Ggx b;
+  const Sum<Lambert, Ggx> sum{0.25f, a, 0.5f, b};
+  const AnyBrdf any = mixture({{0.25f, a}, {0.5f, b}});
+  const std::vector<Pair> pairs = many_pairs();
+  std::vector<Direction> wo, wi;
+  std::vector<ShadingGeometry<float>> geometry;
+  for (const Pair& p : pairs) {
+    wo.push_back(p.wo);
+    wi.push_back(p.wi);
+    geometry.push_back(shading_geometry(p.wo, p.wi));
+  }
+  std::vector<Rgb> of_directions(pairs.size()), of_geometry(pairs.size());
+  any.eval(wo, wi, {&of_directions[0].r, 3 * pairs.size()});
+  any.eval(geometry, {&of_geometry[0].r, 3 * pairs.size()});
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Rgb expected = 0.25f * eval(a, wo[i], wi[i]) + 0.5f * eval(b, wo[i], wi[i]);
+    EXPECT_EQ(of_directions[i], expected);
+    EXPECT_EQ(of_geometry[i], expected);
+    EXPECT_EQ(to_rgb(any(geometry[i])), expected);
+    EXPECT_EQ(eval(sum, wo[i], wi[i]), expected);
+  }
+}
+
+TEST(Mixture, HandsTheGeometryOn) {  // a domain's own half vector must reach the terms
+  ShadingGeometry<float> g = shading_geometry(Direction{0.6f, 0, 0.8f}, Direction{-0.6f, 0, 0.8f});
+  g.wh = normalize(Direction{0.05f, 0, 1});
+  const AnyBrdf any = mixture({{1, Ggx{}}, {1, Lambert{}}});
+  EXPECT_EQ(to_rgb(any(g)), Ggx{}(g) + Lambert{}(g));
+  EXPECT_NE(to_rgb(any(g)), to_rgb(any(shading_geometry(g.wo, g.wi))));
+}
+
+TEST(Mixture, IsZeroBelowTheSurface) {
+  const AnyBrdf any = mixture({{1, Lambert{}}, {1, Grey{}}});
+  const Direction up{0, 0, 1}, down{0, 0, -1};
+  Rgb v{1, 1, 1};
+  any.eval({&up, 1}, {&down, 1}, {&v.r, 3});
+  EXPECT_EQ(v, Rgb{});
+}
+
+TEST(Mixture, CombinesTraits) {
+  const AnyBrdf any = mixture({{0.5f, Grey{}}, {1, Five{}}});
+  EXPECT_EQ(any.channels(), 5);
+  EXPECT_FALSE(any.traits().isotropic);
+  EXPECT_FALSE(any.traits().concurrent);
+  EXPECT_EQ(any.traits().theta_o_knots, (std::vector<float>{0.25f, 0.5f, 1.f}));
+  EXPECT_EQ(any.traits().name, "0.5*grey + five");
+  EXPECT_EQ(mixture({{0.5f, any}}).traits().name, "0.5*(0.5*grey + five)");
+  EXPECT_TRUE(mixture({{1, Lambert{}}, {1, Ggx{}}}).traits().isotropic);
+
+  const Direction wo{0, 0, 1}, wi{0.6f, 0, 0.8f};
+  const Spectrum value = any(shading_geometry(wo, wi));
+  for (int c = 0; c < 5; ++c) EXPECT_FLOAT_EQ(value[c], 0.5f * 1.8f + float(c));
+}
+
+TEST(Mixture, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(mixture({}), Error);
+  EXPECT_THROW(mixture({{1, Five{}}, {1, Lambert{}}}), Error);
+  EXPECT_THROW(mixture({{-1, Lambert{}}}), Error);
+  EXPECT_THROW(mixture({{std::nanf(""), Lambert{}}}), Error);
+}
+
+}  // namespace
+}  // namespace reflectree
