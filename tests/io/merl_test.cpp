@@ -93,7 +93,7 @@ TEST(HalfAngleTable, CentresLieAboveTheHorizonAndInTheirCells) {
         ASSERT_GT(wo.z, 0);
         ASSERT_GT(wi.z, 0);
         const Position x = position(table, wo, wi);
-        ASSERT_NEAR(x.h, h + 0.5, 3e-3);
+        ASSERT_NEAR(x.h, h + 0.5, 1e-2);  // roundings of grazing directions
         ASSERT_NEAR(x.p, p + 0.5, d == 0 ? 1e-2 : 1e-3);
         ASSERT_LT(x.d, d + 0.5 + 1e-3);
         (x.d > d + 0.499 ? inside : pulled) += 1;
