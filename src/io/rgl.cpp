@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view magic{"tensor_file\0", 12};
 constexpr std::uint32_t max_fields = 64;
+constexpr float largest = 1e9f, smallest_sigma = 1e-6f;  // of plausible values: products stay finite
 constexpr std::uint64_t max_side = 4096;  // of any grid: keeps index arithmetic far from overflow
 enum : std::uint8_t { type_u8 = 1, type_f32 = 10, type_last = 11 };
 constexpr std::uint64_t type_bytes[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
@@ -60,7 +61,8 @@ std::map<std::string, Tensor> read_tensors(ByteView bytes, const std::string& wh
   return tensors;
 }
 
-// A field of 32-bit floats, all finite, of the shape wanted; 0 there stands for any length in [2, max_side].
+// A field of 32-bit floats, all within the bounds below, of the shape wanted; 0 there stands for any length
+// in [2, max_side].
 std::vector<float> floats(const std::map<std::string, Tensor>& tensors, const std::string& name,
                           std::vector<std::uint64_t> wanted, std::vector<std::uint64_t>& shape,
                           const std::string& where) {
@@ -77,7 +79,7 @@ std::vector<float> floats(const std::map<std::string, Tensor>& tensors, const st
   std::vector<float> values(t.data.size() / 4);
   for (float& v : values) {
     v = in.f32();
-    if (!std::isfinite(v)) damaged("field '" + name + "' holds a value that is not finite", where);
+    if (!(std::abs(v) <= largest)) damaged("field '" + name + "' holds an impossible value", where);
   }
   shape = t.shape;
   return values;
@@ -143,7 +145,7 @@ RglTable read_rgl(ByteView bytes, const std::string& where, NegativeEntries nega
     }
   };
   for (const float s : f.sigma) {
-    if (!(s > 0)) damaged("'sigma' is not positive", where);
+    if (!(s >= smallest_sigma)) damaged("'sigma' is not positive", where);
   }
   clamp_all(f.ndf);
   clamp_all(f.vndf);

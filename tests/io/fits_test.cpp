@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// NBRDF networks, SGD and ABC fits against fits_reference.py, and the tables that hold them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "measured_data.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/io/material_file.hpp"
+#include "reflectree/io/model_tables.hpp"
+#include "synthetic.hpp"
+
+namespace reflectree {
+namespace {
+
+// |f - reference| / (|reference| + 1e-3), sorted, over pairs that do not graze.
+std::vector<double> errors_of(const std::string& file, const std::string& material, bool swap = false) {
+  const TemporaryFolder folder("fits");
+  const Pairs pairs = random_pairs(500, 0.3f, 21);
+  Bytes raw;
+  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+    for (const Direction& w : {pairs.wo[i], pairs.wi[i]}) {
+      append_f32(raw, w.x);
+      append_f32(raw, w.y);
+      append_f32(raw, w.z);
+    }
+  }
+  write_file_atomically(folder / "pairs", raw);
+  const std::string command = std::string("python3 \"") + REFLECTREE_SOURCE + "/fits_reference.py\" \"" +
+                              file + "\" " + material + " \"" + (folder / "pairs") + "\" \"" +
+                              (folder / "out") + "\"";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("the reference failed: " + command);
+  const Bytes result = read_file(folder / "out", 1U << 24U);
+  ByteReader reference(result, "out");
+  const AnyBrdf f = load_brdf(file, material);
+  std::vector<float> values(pairs.wo.size() * 3);
+  f.eval(swap ? pairs.wi : pairs.wo, swap ? pairs.wo : pairs.wi, values);
+  std::vector<double> all;
+  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+    double difference = 0, size = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double wanted = reference.f64();
+      difference = std::max(difference, std::abs(double(values[3 * i + c]) - wanted));
+      size = std::max(size, wanted);
+    }
+    if (min(pairs.wo[i].z, pairs.wi[i].z) > 0.01f) all.push_back(difference / (size + 1e-3));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// The masking of sharp SGD fits has a cliff on which roundings of the directions alone cost percents.
+void expect_close(const std::string& file, const std::string& material) {
+  const std::vector<double> errors = errors_of(file, material);
+  EXPECT_LT(errors[errors.size() * 99 / 100], 2e-4) << material;
+  EXPECT_LT(errors.back(), 0.05) << material;
+}
+
+TEST(Fits, SyntheticTablesAgreeWithTheReference) {
+  const TemporaryFolder folder("fits");
+  write_file_atomically(folder / "n.csv", synthetic::neural_csv());
+  write_file_atomically(folder / "s.csv", synthetic::sgd_csv());
+  write_file_atomically(folder / "a.csv", synthetic::abc_csv());
+  expect_close(folder / "n.csv", "one");
+  expect_close(folder / "n.csv", "two");
+  expect_close(folder / "s.csv", "varnish");
+  expect_close(folder / "a.csv", "bronze");
+  // Networks are not reciprocal: swapped arguments must show.
+  EXPECT_GT(errors_of(folder / "n.csv", "one", true).back(), 1e-2);
+}
+
+TEST(Fits, MeasuredTablesAgreeWithTheReference) {
+  if (measured_data().empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
+  for (const char* m : {"alum-bronze", "chrome", "pink-fabric"})
+    expect_close(measured_data() + "/nbrdf/nbrdf_merl.csv", m);
+  for (const char* m : {"alum-bronze", "chrome", "green-acrylic", "tungsten-carbide"}) {
+    expect_close(measured_data() + "/fits/sgd_merl100.csv", m);
+  }
+  for (const char* m : {"alum-bronze", "chrome", "white-fabric"})
+    expect_close(measured_data() + "/fits/abc_merl100.csv", m);
+}
+
+TEST(Fits, EveryMeasuredMaterialIsFiniteAndNotNegative) {
+  if (measured_data().empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
+  Pairs pairs = random_pairs(400, 0.3f, 5);
+  for (const float z : {1.f, 1e-3f, 1.7e-5f, 1e-7f}) {  // 89.999 degrees and beyond
+    for (const float phi : {0.f, 1.f, pi}) {
+      pairs.wo.push_back({sqrt(1 - z * z), 0, z});
+      pairs.wi.push_back({0.8f * cos(phi), 0.8f * sin(phi), 0.6f});
+      pairs.wo.push_back(pairs.wi.back());
+      pairs.wi.push_back({sqrt(1 - z * z) * cos(phi), sqrt(1 - z * z) * sin(phi), z});
+      pairs.wo.push_back({sqrt(1 - z * z), 0, z});
+      pairs.wi.push_back({sqrt(1 - z * z) * cos(phi), sqrt(1 - z * z) * sin(phi), z});
+    }
+  }
+  std::vector<float> values(pairs.wo.size() * 3);
+  int materials = 0;
+  for (const char* file : {"/nbrdf/nbrdf_merl.csv", "/nbrdf/nbrdf_rgl-isotropic.csv", "/fits/sgd_merl100.csv",
+                           "/fits/abc_merl100.csv"}) {
+    for (const std::string& member : list_members(measured_data() + file)) {
+      const AnyBrdf f = load_brdf(measured_data() + file, member);
+      f.eval(pairs.wo, pairs.wi, values);
+      ++materials;
+      for (const float v : values) ASSERT_TRUE(v >= 0 && std::isfinite(v)) << f.traits().name;
+    }
+  }
+  EXPECT_EQ(materials, 60 + 26 + 60 + 60);
+}
+
+std::string error_of(const std::string& text, const std::string& member = "") {
+  try {
+    read_brdf(synthetic::as_bytes(text), "t.csv", member);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(ParameterTable, SaysWhatIsWrongAndWhere) {
+  EXPECT_EQ(error_of(synthetic::neural_csv(), "on"), "t.csv: no material 'on'; the nearest of 2: one, two");
+  EXPECT_NE(error_of(synthetic::neural_csv()).find("holds 2 materials; name one as FILE#MATERIAL"),
+            std::string::npos);
+  EXPECT_EQ(error_of(synthetic::sgd_csv()), "no error");  // a single material needs no name
+  EXPECT_NE(error_of("material,\n").find("no material"), std::string::npos);
+  EXPECT_NE(error_of("material,a,b\nx,1,2\n").find("fit no model"), std::string::npos);
+  EXPECT_NE(error_of("material,a,b\nx,1\n").find("line 2: "), std::string::npos);
+  EXPECT_NE(error_of("material,a,b\nx,1,2,3\n").find("line 2: "), std::string::npos);
+  EXPECT_NE(error_of("material,a\n\nx,1e999\n").find("line 3: '1e999' is not a finite number"),
+            std::string::npos);
+  for (const char* bad : {"nan", "inf", "0x10", "1e", "--1", "", "1,", ".", "1 "}) {
+    EXPECT_NE(error_of(std::string("material,a\nx,") + bad + "\n"), "no error") << bad;
+  }
+  std::string table = synthetic::abc_csv();
+  table.replace(table.find("2.2365"), 6, "0.5");
+  EXPECT_NE(error_of(table).find("'ior' of 'bronze' is out of range"), std::string::npos);
+}
+
+TEST(ParameterTable, ReadsNumbersToTheLastFloatDigit) {
+  const auto read = [](const std::string& number) {
+    return read_parameter_table(synthetic::as_bytes("material,a\nx," + number), "t").rows[0].values[0];
+  };
+  Pcg32 bits(8);
+  for (int i = 0; i < 5000; ++i) {
+    const double exponent = 200 * to_unit_double(bits()) - 100;
+    const double v = (to_unit_double(bits()) - 0.5) * std::pow(10, exponent);
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", v);
+    ASSERT_NEAR(read(text), v, 1e-14 * std::abs(v)) << text;
+  }
+  EXPECT_EQ(read("-0.5"), -0.5);
+  EXPECT_EQ(read("+12.25e-1"), 1.225);
+  EXPECT_EQ(read("1e-400"), 0);
+  EXPECT_NEAR(read("123456789012345678901234567890e-29"), 1.2345678901234567, 1e-14);
+}
+
+TEST(MaterialFile, NamesAreCanonicalMaterialText) {
+  const Bytes table = synthetic::as_bytes(synthetic::neural_csv());
+  EXPECT_EQ(read_brdf(table, "t.csv", "two").traits().name, "t.csv#two");
+  EXPECT_EQ(read_brdf(synthetic::rgl_file(), "a b.bsdf").traits().name, "\"a b.bsdf\"");
+}
+
+}  // namespace
+}  // namespace reflectree
