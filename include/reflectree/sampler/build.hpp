@@ -12,10 +12,10 @@ namespace reflectree {
 
 struct BuildOptions {
   Target target;
-  float expected_trials = 1.25f;      // of exact mode, for every wo
-  float one_shot_variance = 0.01f;    // relative variance of the target's weight, one-shot mode
-  float albedo_error = 1e-4f;         // relative
-  std::optional<Domain> domain;       // default: the cheapest, found by trial
+  float expected_trials = 1.25f;    // of exact mode, for every wo
+  float one_shot_variance = 0.01f;  // relative variance of the target's weight, one-shot mode
+  float albedo_error = 1e-4f;       // relative
+  std::optional<Domain> domain;     // default: the cheapest, found by trial
   std::uint64_t seed = 1;
 };
 

@@ -19,9 +19,9 @@ enum SampleFlags : std::uint32_t {
 
 template <BrdfValue V>
 struct DirectionSample {
-  Direction wi;                             // towards the light
-  float pdf = 0;                            // per solid angle, sr^-1
-  V weight{};                               // f_cos / pdf, per channel
+  Direction wi;   // towards the light
+  float pdf = 0;  // per solid angle, sr^-1
+  V weight{};     // f_cos / pdf, per channel
   std::uint32_t flags = sample_reflection;
 };
 

@@ -17,8 +17,8 @@ enum class DomainKind : std::uint8_t { projected_disk, equal_area, half_vector, 
 
 struct Domain {
   DomainKind kind = DomainKind::half_vector;
-  bool half = true;      // mirror-symmetric: y in [0, 1]
-  float exponent = 0;    // a, for DomainKind::stretched
+  bool half = true;    // mirror-symmetric: y in [0, 1]
+  float exponent = 0;  // a, for DomainKind::stretched
   friend bool operator==(const Domain&, const Domain&) = default;
 };
 

@@ -11,7 +11,8 @@ namespace reflectree {
 struct Host {
   // Calls body(begin, end) over disjoint ranges that cover [0, n), in any order, possibly at once.
   std::function<void(std::size_t n, const std::function<void(std::size_t begin, std::size_t end)>& body)>
-      parallel_for = [](std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) { body(0, n); };
+      parallel_for =
+          [](std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) { body(0, n); };
   std::function<void(float fraction)> progress = [](float) {};
   std::function<bool()> cancelled = [] { return false; };
 };

@@ -46,7 +46,7 @@ struct DensityTree {
 struct AlbedoTable {
   std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
   std::vector<float> albedo;
-  float relative_error = 0;        // stated bound on the error of quadrature and interpolation
+  float relative_error = 0;  // stated bound on the error of quadrature and interpolation
   friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
@@ -59,16 +59,16 @@ struct BrdfProbes {
 
 // What the builder measured about its own bounds.
 struct BuildReport {
-  float expected_trials = 0;        // worst slab
-  float overshoot_mass = 0;         // estimate of 1 - int min(T, aM) / int T, worst slab
-  float one_shot_variance = 0;      // median over slabs of the relative variance
-  float asymmetry = 0;              // mean |T - mirrored T| / mean T
+  float expected_trials = 0;    // worst slab
+  float overshoot_mass = 0;     // estimate of 1 - int min(T, aM) / int T, worst slab
+  float one_shot_variance = 0;  // median over slabs of the relative variance
+  float asymmetry = 0;          // mean |T - mirrored T| / mean T
   std::uint64_t evaluations = 0;
   friend bool operator==(const BuildReport&, const BuildReport&) = default;
 };
 
 struct SamplerData {
-  std::string material;             // canonical text of the BRDF, for people
+  std::string material;  // canonical text of the BRDF, for people
   Target target;
   Domain domain;
   Partition exact_partition;

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exact mode: directions with a density exactly proportional to t cos_i for every wo, whatever the errors
+// of any integral; only the bounds matter. One trial: a leaf in proportion to its volume V = area * M, a
+// point uniform in it, accepted with probability T / (a M); after a rejection everything starts again from
+// the leaf. pdf = t cos_i / a(wo), where a is the tabulated albedo.
+#pragma once
+
+#include <memory>
+
+#include "reflectree/brdf/brdf.hpp"
+#include "reflectree/sampler/direction_sample.hpp"
+#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/incidence.hpp"
+#include "reflectree/sampler/statistics.hpp"
+
+namespace reflectree {
+
+template <Brdf F>
+class ExactSampler {
+ public:
+  using Value = ValueOf<F>;
+  static constexpr int max_trials = 256;
+
+  ExactSampler(F f, std::shared_ptr<const PackedSampler> packed)
+      : f_(std::move(f)), packed_(std::move(packed)) {}
+
+  const F& brdf() const { return f_; }
+  const PackedSampler& packed() const { return *packed_; }
+
+  template <RandomBits U, class Stats = NoStatistics>
+  std::optional<DirectionSample<Value>> sample(Direction wo, U& u, Stats&& stats = {}) const {
+    Incidence in;
+    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    const ExactSlab& slab = packed_->exact[packed_->exact_lookup(in.wo.z)];
+    const float inverse_albedo = 1 / in.albedo;
+    for (int trial = 0; trial < max_trials; ++trial) {
+      const Candidate c = propose(slab, in, u);
+      const float ratio = c.target * inverse_albedo;  // T / a
+      const bool accepted = to_unit_double(u()) * double(c.majorant) < double(ratio);
+      stats.trial(accepted, ratio, c.majorant);
+      if (!accepted) continue;
+      // pdf = t cos_i / a, weight = f_cos / pdf = a f / t: per channel, cos_i cancels.
+      const float cos_theta_i = c.point.geometry.cos_theta_i;
+      const float t = c.target / c.point.projected_area;
+      return DirectionSample<Value>{from_incidence(in, c.point.geometry.wi), t * cos_theta_i * inverse_albedo,
+                                    scaled(c.value, in.albedo / t), sample_reflection};
+    }
+    stats.exhausted();
+    return std::nullopt;
+  }
+
+  // One trial. Accepted: weight = sum(V) a f_cos J / min(T, a M); else nullopt, which counts as weight 0.
+  // Unbiased without the albedo table being right and even where a bound is overshot: the referee of
+  // both modes. pdf is that of the trial's acceptance: min(T, a M) cos_i / (sum(V) a J).
+  template <RandomBits U>
+  std::optional<DirectionSample<Value>> sample_once(Direction wo, U& u) const {
+    Incidence in;
+    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    const ExactSlab& slab = packed_->exact[packed_->exact_lookup(in.wo.z)];
+    const Candidate c = propose(slab, in, u);
+    const float ratio = c.target / in.albedo;
+    if (!(to_unit_double(u()) * double(c.majorant) < double(ratio))) return std::nullopt;
+    const float density = min(ratio, c.majorant) / volume(slab);  // per share of the square
+    return DirectionSample<Value>{from_incidence(in, c.point.geometry.wi),
+                                  density * c.point.geometry.cos_theta_i / c.point.projected_area,
+                                  scaled(c.value, c.point.projected_area / density), sample_reflection};
+  }
+
+  // Per solid angle, sr^-1: t cos_i / a(wo).
+  float pdf(Direction wo, Direction wi) const { return pdf_disk(wo, wi) * max(wi.z, 0.f); }
+  // Per projected solid angle: t / a(wo).
+  float pdf_disk(Direction wo, Direction wi) const {
+    Incidence in;
+    if (!(wi.z > 0) || !find_incidence(*packed_, wo, in)) return 0;
+    const Value value = eval(f_, shading_geometry(in.wo, to_incidence(in, wi)));
+    return packed_->target(value) / in.albedo;
+  }
+  // a(wo) of the target, from the table; 0 for no sample.
+  float albedo(Direction wo) const {
+    Incidence in;
+    return find_incidence(*packed_, wo, in) ? in.albedo : 0.f;
+  }
+  // sum(V) of the slab of wo: the expected trials, up to the error of the albedo table.
+  float expected_trials(Direction wo) const {
+    Incidence in;
+    if (!find_incidence(*packed_, wo, in)) return 0;
+    return volume(packed_->exact[packed_->exact_lookup(in.wo.z)]);
+  }
+
+ private:
+  struct Candidate {
+    DomainPoint point;
+    Value value;
+    float target;    // T = t * projected_area
+    float majorant;  // M, of T / a
+  };
+
+  static float volume(const ExactSlab& slab) { return slab.unit * float(slab.bucket) * float(slab.count); }
+
+  template <RandomBits U>
+  Candidate propose(const ExactSlab& slab, const Incidence& in, U& u) const {
+    const ExactLeaf& leaf =
+        detail::choose_leaf(slab, packed_->exact_leaves.data() + slab.first, detail::bits64(u));
+    const detail::UnpackedCell cell = detail::unpack(leaf.cell, packed_->domain.half);
+    const std::uint32_t ux = u(), uy = u();
+    const Vec2<float> p{cell.x0 + cell.width * to_unit_float(ux), cell.y0 + cell.height * to_unit_float(uy)};
+    Candidate c;
+    c.point = lift(packed_->domain, in.wo, p);
+    c.majorant = slab.unit * float(leaf.mass) * cell.inverse_area;
+    if (packed_->domain.half && (ux & 1U)) {  // a bit that the position does not use
+      c.point.geometry.wi.y = -c.point.geometry.wi.y;
+      c.point.geometry.wh.y = -c.point.geometry.wh.y;
+    }
+    if (c.point.projected_area > 0) {
+      c.value = eval(f_, c.point.geometry);
+      c.target = packed_->target(c.value) * c.point.projected_area;
+    } else {
+      c.value = Value{};
+      c.target = 0;
+    }
+    return c;
+  }
+
+  F f_;
+  std::shared_ptr<const PackedSampler> packed_;
+};
+
+}  // namespace reflectree

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The run-time layout, made from SamplerData at load: flat arrays, alias tables, guides. Speed work
+// changes this and never the file.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/sampler_data.hpp"
+
+namespace reflectree {
+
+// Finds the interval of an ascending list of cosines that holds c. The bits of a positive float grow with
+// it, logarithmically by octave and linearly inside: they index a guide that is finest at grazing.
+class CosineLookup {
+ public:
+  CosineLookup() = default;
+  explicit CosineLookup(std::vector<float> borders);
+  const std::vector<float>& borders() const { return borders_; }
+  // i with borders[i] <= c < borders[i + 1], clamped; c in [min_cos_theta_o, 1].
+  std::size_t operator()(float c) const {
+    std::size_t i = guide_[(std::bit_cast<std::uint32_t>(c) - base_) >> shift];
+    while (i + 2 < borders_.size() && borders_[i + 1] <= c) ++i;
+    return i;
+  }
+  std::size_t bytes() const {
+    return borders_.size() * sizeof(float) + guide_.size() * sizeof(std::uint16_t);
+  }
+
+ private:
+  static constexpr int shift = 18;  // 32 entries an octave
+  static constexpr std::uint32_t base_ = std::bit_cast<std::uint32_t>(min_cos_theta_o);
+  std::vector<float> borders_;
+  std::vector<std::uint16_t> guide_;
+};
+
+// A cell in 2 x 16 bits: (1 << level) + index per axis.
+struct PackedCell {
+  std::uint16_t x = 1, y = 1;
+};
+
+struct ExactLeaf {
+  std::uint32_t threshold;  // of the alias table's bucket with this index
+  std::uint32_t alias;
+  std::uint32_t mass;
+  PackedCell cell;
+};
+
+struct OneShotLeaf {
+  std::uint32_t threshold, alias, mass;
+  PackedCell cell;
+  std::int8_t slope_x, slope_y;
+};
+
+// A node of a one-shot tree: an inner node splits x or y and sends a share `lower` of the probability to
+// its first child; a leaf names its OneShotLeaf.
+struct DescentNode {
+  double lower;
+  std::uint32_t child;  // of the slab's nodes; for a leaf, index of the leaf
+  Split split;
+};
+
+struct ExactSlab {
+  std::uint32_t first = 0, count = 0;  // leaves
+  std::uint32_t bucket = 0;            // capacity of each bucket of the alias table
+  float unit = 0;                      // majorant = unit * mass / area
+};
+
+struct OneShotSlab {
+  std::uint32_t first = 0, count = 0, first_node = 0;
+  std::uint32_t bucket = 0;
+  float unit = 0;  // density per share of the square = unit * mass / area
+};
+
+struct PackedSampler {
+  Domain domain;
+  Target target;
+  CosineLookup exact_lookup, one_shot_lookup, albedo_lookup;
+  std::vector<ExactSlab> exact;  // in order of ascending cos_theta_o
+  std::vector<ExactLeaf> exact_leaves;
+  std::vector<OneShotSlab> one_shot;
+  std::vector<OneShotLeaf> one_shot_leaves;
+  std::vector<DescentNode> one_shot_nodes;
+  std::vector<float> albedo;
+
+  float albedo_at(float cos_theta_o) const {
+    const std::size_t i = albedo_lookup(cos_theta_o);
+    const float lo = albedo_lookup.borders()[i], hi = albedo_lookup.borders()[i + 1];
+    return lerp((cos_theta_o - lo) / (hi - lo), albedo[i], albedo[i + 1]);
+  }
+};
+
+// Throws Error if the data is not valid.
+PackedSampler pack(const SamplerData& data);
+// Bytes of the run-time arrays: exact, one-shot and albedo together.
+std::size_t bytes_of(const PackedSampler& packed);
+
+}  // namespace reflectree

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "albedo_build.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "reflectree/sampler/albedo.hpp"
+
+namespace reflectree {
+
+float albedo_at(const AlbedoTable& table, float c) {
+  const auto& x = table.cos_theta_o;
+  if (x.empty() || !(c >= x.front()) || c > x.back()) return 0;
+  const auto upper = std::upper_bound(x.begin() + 1, x.end() - 1, c) - x.begin();
+  const auto i = std::size_t(upper - 1);
+  const float t = (c - x[i]) / (x[i + 1] - x[i]);
+  return lerp(t, table.albedo[i], table.albedo[i + 1]);
+}
+
+namespace detail {
+
+namespace {
+
+// Genz and Malik 1980, degree 7 with an embedded degree 5, in two dimensions: 17 points.
+constexpr std::size_t rule_size = 17;
+const float l2 = std::sqrt(9.f / 70), l3 = std::sqrt(0.9f), l5 = std::sqrt(9.f / 19);
+const std::array<Vec2<float>, rule_size> rule_points{{{0, 0},
+                                                      {-l2, 0},
+                                                      {l2, 0},
+                                                      {0, -l2},
+                                                      {0, l2},
+                                                      {-l3, 0},
+                                                      {l3, 0},
+                                                      {0, -l3},
+                                                      {0, l3},
+                                                      {-l3, -l3},
+                                                      {l3, -l3},
+                                                      {-l3, l3},
+                                                      {l3, l3},
+                                                      {-l5, -l5},
+                                                      {l5, -l5},
+                                                      {-l5, l5},
+                                                      {l5, l5}}};
+
+struct Region {
+  double x, y, hx, hy;  // centre and half widths in square coordinates
+  double value = 0, error = 0;
+  bool split_x = true;
+};
+
+void apply_rule(Region& r, const FieldValue* v, double area) {
+  const auto sum4 = [v](int i) { return double(v[i].mean) + v[i + 1].mean + v[i + 2].mean + v[i + 3].mean; };
+  const double f0 = v[0].mean, s2 = sum4(1), s3 = sum4(5), s4 = sum4(9), s5 = sum4(13);
+  const double share = 4 * r.hx * r.hy / area;
+  const double degree7 = (-3816 * f0 + 2940 * s2 + 1020 * s3 + 200 * s4 + 6859. / 4 * s5) / 19683;
+  const double degree5 = (-1942 * f0 + 735 * s2 + 65 * s3 + 50 * s4) / 1458;
+  r.value = share * degree7;
+  r.error = share * std::abs(degree7 - degree5);
+  // Fourth differences along each axis choose the split.
+  const double ratio = (9. / 70) / 0.9;
+  const auto difference = [&](int i, int j) {
+    return std::abs(double(v[i].mean) + v[i + 1].mean - 2 * f0 -
+                    ratio * (double(v[j].mean) + v[j + 1].mean - 2 * f0));
+  };
+  const double dx = difference(1, 5), dy = difference(3, 7);
+  r.split_x = dx > dy || (dx == dy && r.hx >= r.hy);
+}
+
+// One integral, advanced in rounds: the regions that carry most of the error are halved.
+struct Integral {
+  float cos_theta_o = 0;
+  std::vector<Region> regions;
+  std::size_t fresh = 0;  // regions from here on await their values
+  double value = 0, error = 0;
+  bool done = false;
+};
+
+constexpr std::size_t max_regions = 40000;
+
+void start(Integral& integral, const Domain& domain) {
+  const int nx = 8, ny = domain.half ? 4 : 8;
+  const double y0 = domain.half ? 0 : -1, hx = 1. / nx, hy = (1 - y0) / (2 * ny);
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      integral.regions.push_back({-1 + (2 * i + 1) * hx, y0 + (2 * j + 1) * hy, hx, hy});
+    }
+  }
+}
+
+void advance(Integral& integral, double relative_error) {
+  integral.value = integral.error = 0;
+  double square = 0;
+  for (const Region& r : integral.regions) {
+    integral.value += r.value, integral.error += r.error, square += r.error * r.error;
+  }
+  // The rule overestimates its errors, and those of kinks have random signs: six times the root of the
+  // sum of squares bounds them, where the plain sum would ask for every kink of a table to be resolved.
+  integral.error = min(integral.error, 6 * std::sqrt(square));
+  const double allowed = relative_error * integral.value;
+  if (integral.error <= allowed || integral.regions.size() >= max_regions) {
+    integral.done = true;
+    return;
+  }
+  // Halve the worst regions that together hold the surplus of error.
+  std::vector<std::size_t> order(integral.regions.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const double ea = integral.regions[a].error, eb = integral.regions[b].error;
+    return ea != eb ? ea > eb : a < b;
+  });
+  double sum = 0, held = 0;
+  for (const Region& r : integral.regions) sum += r.error;
+  const double surplus = sum * (1 - 0.5 * allowed / integral.error);
+  std::vector<Region> next;
+  std::size_t count = 0;
+  const double smallest = 0.02 * integral.regions[order[0]].error;
+  while (count < order.size() && held < surplus && integral.regions[order[count]].error >= smallest) {
+    held += integral.regions[order[count++]].error;
+  }
+  std::vector<char> split(integral.regions.size(), 0);
+  for (std::size_t k = 0; k < count; ++k) split[order[k]] = 1;
+  std::vector<Region> children;
+  for (std::size_t i = 0; i < integral.regions.size(); ++i) {
+    Region r = integral.regions[i];
+    if (!split[i]) {
+      next.push_back(r);
+      continue;
+    }
+    (r.split_x ? r.hx : r.hy) /= 2;
+    for (const double sign : {-1., 1.}) {
+      Region child = r;
+      (r.split_x ? child.x : child.y) += sign * (r.split_x ? r.hx : r.hy);
+      children.push_back(child);
+    }
+  }
+  integral.fresh = next.size();
+  next.insert(next.end(), children.begin(), children.end());
+  integral.regions = std::move(next);
+}
+
+// Integrates T over the square for every cosine; all integrals advance together, a round a batch.
+std::vector<double> integrate(const Field& field, const std::vector<float>& cosines, double relative_error,
+                              const Host& host, std::uint64_t* evaluations) {
+  const double area = field.domain.half ? 2 : 4;
+  std::vector<Integral> integrals(cosines.size());
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    integrals[i].cos_theta_o = cosines[i];
+    start(integrals[i], field.domain);
+  }
+  std::vector<FieldPoint> points;
+  std::vector<FieldValue> values;
+  for (bool busy = true; busy;) {
+    points.clear();
+    for (const Integral& integral : integrals) {
+      if (integral.done) continue;
+      for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r) {
+        const Region& region = integral.regions[r];
+        for (const Vec2<float>& q : rule_points) {
+          points.push_back(
+              {integral.cos_theta_o,
+               {float(region.x + region.hx * double(q.x)), float(region.y + region.hy * double(q.y))}});
+        }
+      }
+    }
+    values.resize(points.size());
+    eval_in_parallel(field, host, points, values);
+    *evaluations += points.size();
+    const FieldValue* v = values.data();
+    busy = false;
+    for (Integral& integral : integrals) {
+      if (integral.done) continue;
+      for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r, v += rule_size) {
+        apply_rule(integral.regions[r], v, area);
+      }
+      advance(integral, relative_error);
+      busy = busy || !integral.done;
+    }
+  }
+  std::vector<double> result;
+  for (const Integral& integral : integrals) result.push_back(integral.value);
+  return result;
+}
+
+// A panel of the table: five equidistant nodes in theta_o (in which measured tables are smooth at the normal,
+// where the cosine has a branch point) and the polynomial through them. Between kinks the albedo is smooth,
+// so that a few integrals serve many entries of the table.
+struct Panel {
+  double lo, hi;
+};
+double node_of(const Panel& p, int i) {
+  return i == 0 ? p.lo : i == 4 ? p.hi : p.lo + 0.25 * i * (p.hi - p.lo);
+}
+float cosine_of(double theta) { return clamp(float(std::cos(theta)), min_cos_theta_o, 1.f); }
+
+// The polynomial through the values at t = first, first + step, ... of the five nodes, at t in [0, 4].
+double interpolate(const std::array<double, 5>& v, int step, double t) {
+  double sum = 0;
+  for (int i = 0; i < 5; i += step) {
+    double basis = 1;
+    for (int j = 0; j < 5; j += step) {
+      if (j != i) basis *= (t - j) / (i - j);
+    }
+    sum += basis * v[std::size_t(i)];
+  }
+  return sum;
+}
+
+// Appends the entries of the panel after `lo`, halving until lines in the cosine miss the polynomial by at
+// most `error`, relatively.
+void tabulate(const Panel& panel, const std::array<double, 5>& v, double t0, double t1, double error,
+              int depth, std::map<float, double>& table) {
+  const auto cosine_at = [&](double t) { return std::cos(panel.lo + 0.25 * t * (panel.hi - panel.lo)); };
+  const double a0 = interpolate(v, 1, t0), a1 = interpolate(v, 1, t1), mid = 0.5 * (t0 + t1);
+  const double c0 = cosine_at(t0), c1 = cosine_at(t1), middle = interpolate(v, 1, mid);
+  const double line = a0 + (cosine_at(mid) - c0) / (c1 - c0) * (a1 - a0);
+  if (depth > 0 && std::abs(line - middle) > error * middle) {
+    tabulate(panel, v, t0, mid, error, depth - 1, table);
+    tabulate(panel, v, mid, t1, error, depth - 1, table);
+    return;
+  }
+  table[cosine_of(panel.lo + 0.25 * t1 * (panel.hi - panel.lo))] = max(a1, 0.);
+}
+
+}  // namespace
+
+AlbedoTable build_albedo(const Field& field, float relative_error, const Host& host,
+                         std::uint64_t* evaluations) {
+  const double cubature_error = 0.3 * double(relative_error),
+               interpolation_error = 0.2 * double(relative_error);
+  std::vector<double> borders;
+  for (const float c :
+       {min_cos_theta_o, 0x1p-13f, 0x1p-10f, 0x1p-7f, 0x1p-5f, 0x1p-3f, 0.3f, 0.6f, 0.875f, 1.f}) {
+    borders.push_back(std::acos(double(c)));
+  }
+  for (const float theta : field.f.traits().theta_o_knots) {
+    if (theta > 1e-3f && cos(theta) > 1.5f * min_cos_theta_o) borders.push_back(double(theta));
+  }
+  std::sort(borders.begin(), borders.end());
+  borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
+
+  std::vector<Panel> open, closed;
+  for (std::size_t i = 0; i + 1 < borders.size(); ++i) open.push_back({borders[i], borders[i + 1]});
+  std::map<double, double> nodes;
+  const auto values_of = [&](const Panel& panel) {
+    std::array<double, 5> v;
+    for (int i = 0; i < 5; ++i) v[std::size_t(i)] = nodes[node_of(panel, i)];
+    return v;
+  };
+  for (int level = 0; !open.empty(); ++level) {
+    std::vector<double> fresh;
+    std::vector<float> cosines;
+    for (const Panel& panel : open) {
+      for (int i = 0; i < 5; ++i) {
+        if (!nodes.emplace(node_of(panel, i), 0.).second) continue;
+        fresh.push_back(node_of(panel, i));
+        cosines.push_back(cosine_of(fresh.back()));
+      }
+    }
+    const std::vector<double> a = integrate(field, cosines, cubature_error, host, evaluations);
+    for (std::size_t i = 0; i < a.size(); ++i) nodes[fresh[i]] = a[i];
+    std::vector<Panel> next;
+    for (const Panel& panel : open) {
+      // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less.
+      const std::array<double, 5> v = values_of(panel);
+      double miss = 0, scale = 0;
+      for (const int i : {1, 3}) {
+        miss = max(miss, std::abs(interpolate(v, 2, i) - v[std::size_t(i)]));
+        scale = max(scale, v[std::size_t(i)]);
+      }
+      if (miss > 2 * interpolation_error * scale && level < 10) {
+        const double mid = node_of(panel, 2);
+        next.push_back({panel.lo, mid}), next.push_back({mid, panel.hi});
+      } else {
+        closed.push_back(panel);
+      }
+    }
+    open = std::move(next);
+  }
+  std::map<float, double> entries{{1.f, nodes[borders.front()]}};
+  for (const Panel& panel : closed) tabulate(panel, values_of(panel), 0, 4, interpolation_error, 8, entries);
+  AlbedoTable table;
+  for (const auto& [c, a] : entries) table.cos_theta_o.push_back(c), table.albedo.push_back(float(a));
+  table.relative_error = relative_error;
+  return table;
+}
+
+}  // namespace detail
+}  // namespace reflectree

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/sampler/build.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "albedo_build.hpp"
+#include "examine.hpp"
+#include "field.hpp"
+#include "grow.hpp"
+#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/identity.hpp"
+#include "tighten.hpp"
+
+namespace reflectree {
+
+namespace {
+
+using namespace detail;
+
+constexpr float theta_max = 1.5707887f;  // cos = min_cos_theta_o, rounded outwards
+
+std::vector<Slab> first_slabs(const std::vector<float>& knots, const AlbedoTable& albedo) {
+  std::vector<float> borders{0, theta_max};
+  for (const float theta : knots) {
+    if (theta > 1e-4f && theta < theta_max - 1e-4f) borders.push_back(theta);
+  }
+  std::sort(borders.begin(), borders.end());
+  borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
+  std::vector<Slab> slabs;
+  for (std::size_t i = 0; i + 1 < borders.size(); ++i)
+    slabs.push_back(make_slab(borders[i], borders[i + 1], albedo));
+  return slabs;
+}
+
+// The borders between slabs as a balanced tree.
+void add_borders(const std::vector<Slab>& slabs, std::size_t begin, std::size_t end, Partition& partition) {
+  if (end - begin == 1) {
+    partition.axis.push_back(Partition::leaf);
+    return;
+  }
+  const std::size_t mid = (begin + end) / 2;
+  partition.axis.push_back(0);
+  partition.split.push_back(slabs[mid].theta_lo);
+  add_borders(slabs, begin, mid, partition);
+  add_borders(slabs, mid, end, partition);
+}
+
+Partition partition_of(const std::vector<Slab>& slabs) {
+  Partition partition;
+  partition.coordinates = {{"theta_o", 0, theta_max}};
+  add_borders(slabs, 0, slabs.size(), partition);
+  return partition;
+}
+
+std::vector<Split> preorder(const Slab& slab) {
+  std::vector<Split> order;
+  std::vector<std::uint32_t> stack{0};
+  while (!stack.empty()) {
+    const Node& node = slab.nodes[stack.back()];
+    stack.pop_back();
+    order.push_back(node.split);
+    if (node.split != Split::leaf) stack.push_back(node.child + 1), stack.push_back(node.child);
+  }
+  return order;
+}
+
+// Integer masses, rounded up, that sum to less than 2^32; returns the unit.
+double quantise(const std::vector<double>& cost, std::vector<std::uint32_t>& mass) {
+  double total = 0;
+  for (const double c : cost) total += c;
+  const double unit = max(total, 1e-30) / (4294967295. - 2. * double(cost.size()) - 2);
+  for (const double c : cost) mass.push_back(std::uint32_t(max(std::ceil(c / unit), 1.)));
+  return unit;
+}
+
+MajorantTree majorant_tree(const Slab& slab) {
+  MajorantTree tree;
+  tree.nodes = preorder(slab);
+  std::vector<double> cost;
+  for (const std::uint32_t i : leaves_in_order(slab)) cost.push_back(double(slab.nodes[i].leaf.cost));
+  const double unit = quantise(cost, tree.mass);
+  double sum = 0;
+  for (const std::uint32_t m : tree.mass) sum += m;
+  tree.volume = std::nextafter(float(unit * sum), 1e30f);
+  return tree;
+}
+
+DensityTree density_tree(const Slab& slab) {
+  DensityTree tree;
+  tree.nodes = preorder(slab);
+  std::vector<double> cost;
+  for (const std::uint32_t i : leaves_in_order(slab)) {
+    const Leaf& leaf = slab.nodes[i].leaf;
+    // No leaf loses support, whatever its grid saw.
+    cost.push_back(double(area_share(leaf.cell)) * double(max(leaf.share, 1e-3f)));
+    tree.slope_x.push_back(std::int8_t(std::lround(leaf.slope_x * 128)));
+    tree.slope_y.push_back(std::int8_t(std::lround(leaf.slope_y * 128)));
+  }
+  quantise(cost, tree.mass);
+  return tree;
+}
+
+double volume(const Slab& slab) {
+  double sum = 0;
+  for (const Node& node : slab.nodes) sum += node.split == Split::leaf ? double(node.leaf.cost) : 0.;
+  return sum;
+}
+
+// Grows, attacks the bounds, and grows again while the raised bounds cost more trials than allowed.
+std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const AlbedoTable& albedo,
+                              const BuildOptions& options, const Host& host, BuildReport& report) {
+  constexpr float accepted_overshoot = 2e-7f;
+  constexpr int max_passes = 6;
+  const float spare = 0.96f;  // of the budget: the attack will use the rest
+  GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, analyse_exact};
+  grow(slabs, field, albedo, rules, host, &report.evaluations);
+  rules.split_slabs = false;
+  std::vector<std::size_t> first_new(slabs.size(), 0);
+  for (int pass = 0; pass < max_passes; ++pass) {
+    maximise(slabs, first_new, field, albedo, host, &report.evaluations);
+    report.overshoot_mass = probe(slabs, 100, options.seed + 1000003ULL * std::uint64_t(pass), field, albedo,
+                                  host, &report.evaluations);
+    bool dear = false;
+    for (std::size_t s = 0; s < slabs.size(); ++s) {
+      first_new[s] = slabs[s].nodes.size();
+      dear = dear || volume(slabs[s]) > double(options.expected_trials);
+    }
+    if (dear) grow(slabs, field, albedo, rules, host, &report.evaluations);
+    if (!dear && report.overshoot_mass <= accepted_overshoot) break;
+  }
+  for (const Slab& slab : slabs) report.expected_trials = max(report.expected_trials, float(volume(slab)));
+  return slabs;
+}
+
+float median_variance(const std::vector<Slab>& slabs) {
+  std::vector<double> variance;
+  for (const Slab& slab : slabs) {
+    double cost = 0, ideal = 0;
+    for (const Node& node : slab.nodes) {
+      if (node.split == Split::leaf) cost += double(node.leaf.cost), ideal += double(node.leaf.ideal);
+    }
+    if (ideal > 0) variance.push_back(sqr(cost / ideal) - 1);
+  }
+  if (variance.empty()) return 0;
+  std::nth_element(variance.begin(), variance.begin() + std::ptrdiff_t(variance.size() / 2), variance.end());
+  return float(variance[variance.size() / 2]);
+}
+
+}  // namespace
+
+SamplerData build(const AnyBrdf& f, const BuildOptions& options, const Host& host) {
+  SamplerData data;
+  data.material = f.traits().name;
+  data.target = options.target;
+  const Examination seen = examine(f, options, host);
+  data.domain = options.domain ? *options.domain : choose_domain(f, options, seen, host);
+  data.report.asymmetry = seen.asymmetry;
+  const Field field{f, options.target, data.domain, data.domain.half && !seen.mirror_symmetric};
+  host.progress(0.1f);
+
+  data.albedo = build_albedo(field, options.albedo_error, host, &data.report.evaluations);
+  host.progress(0.4f);
+  const std::vector<Slab> slabs = first_slabs(f.traits().theta_o_knots, data.albedo);
+
+  const std::vector<Slab> exact = build_exact(slabs, field, data.albedo, options, host, data.report);
+  data.exact_partition = partition_of(exact);
+  for (const Slab& slab : exact) data.exact.push_back(majorant_tree(slab));
+  host.progress(0.9f);
+
+  std::vector<Slab> one_shot = slabs;
+  const GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, analyse_one_shot};
+  grow(one_shot, field, data.albedo, rules, host, &data.report.evaluations);
+  data.one_shot_partition = partition_of(one_shot);
+  for (const Slab& slab : one_shot) data.one_shot.push_back(density_tree(slab));
+  data.report.one_shot_variance = median_variance(one_shot);
+
+  data.probes = probe_identity(f, options.target);
+  host.progress(1);
+  return data;
+}
+
+}  // namespace reflectree

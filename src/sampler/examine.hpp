@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the builder finds out about a function before it builds.
+#pragma once
+
+#include "field.hpp"
+#include "reflectree/sampler/build.hpp"
+
+namespace reflectree::detail {
+
+struct Examination {
+  bool mirror_symmetric = true;  // to rounding
+  float asymmetry = 0;           // mean |T - mirrored T| / mean T
+};
+
+// Refuses functions that are negative, NaN or infinite, that differ between two calls or that depend on
+// more than theta_o, theta_i and phi_o - phi_i.
+Examination examine(const AnyBrdf& f, const BuildOptions& options, const Host& host);
+
+// The domain with the fewest leaves in trial trees over thin slabs from the normal to grazing.
+Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examination& seen,
+                     const Host& host);
+
+}  // namespace reflectree::detail

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/sampler/sampler_data.hpp"
+
+#include <cmath>
+
+#include "reflectree/error.hpp"
+#include "reflectree/sampler/albedo.hpp"
+
+namespace reflectree {
+
+const char* name_of(DomainKind kind) {
+  switch (kind) {
+    case DomainKind::projected_disk:
+      return "projected_disk";
+    case DomainKind::equal_area:
+      return "equal_area";
+    case DomainKind::half_vector:
+      return "half_vector";
+    case DomainKind::back_vector:
+      return "back_vector";
+    case DomainKind::stretched:
+      return "stretched";
+  }
+  return "unknown";
+}
+
+std::vector<Cell> leaf_cells(const std::vector<Split>& nodes, const Domain& domain) {
+  std::vector<Cell> cells, stack{{-1, 1, domain.half ? 0.f : -1.f, 1}};
+  for (const Split split : nodes) {
+    if (stack.empty()) break;
+    const Cell c = stack.back();
+    stack.pop_back();
+    if (split == Split::leaf) {
+      cells.push_back(c);
+    } else if (split == Split::x) {
+      const float mid = 0.5f * (c.x0 + c.x1);
+      stack.push_back({mid, c.x1, c.y0, c.y1});
+      stack.push_back({c.x0, mid, c.y0, c.y1});
+    } else {
+      const float mid = 0.5f * (c.y0 + c.y1);
+      stack.push_back({c.x0, c.x1, mid, c.y1});
+      stack.push_back({c.x0, c.x1, c.y0, mid});
+    }
+  }
+  return cells;
+}
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what, const std::string& where) {
+  throw Error(what, where, "build the sampler again");
+}
+
+// Complete preorder tree of at most 15 levels an axis, one nonzero mass a leaf.
+void check_tree(const std::vector<Split>& nodes, const std::vector<std::uint32_t>& mass, bool may_be_empty,
+                const std::string& where) {
+  struct Levels {
+    int x, y;
+  };
+  std::vector<Levels> stack{{0, 0}};
+  std::size_t leaves = 0;
+  for (const Split split : nodes) {
+    if (stack.empty()) fail("the tree goes on after its end", where);
+    const Levels l = stack.back();
+    stack.pop_back();
+    if (split == Split::leaf) {
+      ++leaves;
+      continue;
+    }
+    if (split != Split::x && split != Split::y) fail("unknown kind of node", where);
+    const Levels child{l.x + (split == Split::x), l.y + (split == Split::y)};
+    if (child.x > 15 || child.y > 15) fail("the tree is deeper than 15 levels an axis", where);
+    stack.push_back(child);
+    stack.push_back(child);
+  }
+  if (!stack.empty()) fail("the tree is incomplete", where);
+  if (mass.size() != leaves) fail("the number of masses differs from that of leaves", where);
+  std::uint64_t sum = 0;
+  for (const std::uint32_t m : mass) {
+    if (m == 0 && !may_be_empty) fail("a leaf has lost its support (mass 0)", where);
+    sum += m;
+  }
+  if (sum == 0 || sum > 0xffffffffULL) fail("the masses do not sum to 1 .. 2^32 - 1", where);
+}
+
+}  // namespace
+
+void validate(const SamplerData& data) {
+  validate(data.exact_partition);
+  validate(data.one_shot_partition);
+  const auto is_theta = [](const Partition& p) {
+    return p.coordinates.size() == 1 && p.coordinates[0].name == "theta_o";
+  };
+  if (!is_theta(data.exact_partition) || !is_theta(data.one_shot_partition)) {
+    fail("this version serves one known coordinate, theta_o", "partition of the known coordinates");
+  }
+  if (slab_count(data.exact_partition) != data.exact.size()) fail("one tree a slab is needed", "exact trees");
+  if (slab_count(data.one_shot_partition) != data.one_shot.size())
+    fail("one tree a slab is needed", "one-shot trees");
+  if (data.exact.size() > 60000 || data.one_shot.size() > 60000) fail("more than 60000 slabs", "partitions");
+  for (std::size_t s = 0; s < data.exact.size(); ++s) {
+    const std::string where = "exact tree " + std::to_string(s);
+    check_tree(data.exact[s].nodes, data.exact[s].mass, false, where);
+    if (!(std::isfinite(data.exact[s].volume) && data.exact[s].volume >= 0))
+      fail("the volume is not a number", where);
+    if (data.exact[s].status != BoundStatus::certified && data.exact[s].status != BoundStatus::estimated) {
+      fail("unknown status of the bounds", where);
+    }
+  }
+  for (std::size_t s = 0; s < data.one_shot.size(); ++s) {
+    const DensityTree& tree = data.one_shot[s];
+    const std::string where = "one-shot tree " + std::to_string(s);
+    check_tree(tree.nodes, tree.mass, false, where);
+    if (tree.slope_x.size() != tree.mass.size() || tree.slope_y.size() != tree.mass.size()) {
+      fail("one slope a leaf and axis is needed", where);
+    }
+    for (std::size_t i = 0; i < tree.mass.size(); ++i) {
+      if (tree.slope_x[i] == -128 || tree.slope_y[i] == -128)
+        fail("a slope empties an edge of its leaf", where);
+    }
+  }
+  const AlbedoTable& a = data.albedo;
+  if (a.cos_theta_o.size() < 2 || a.cos_theta_o.size() != a.albedo.size() || a.cos_theta_o.size() > 60000) {
+    fail("needs 2 to 60000 nodes, a value each", "albedo table");
+  }
+  for (std::size_t i = 0; i < a.albedo.size(); ++i) {
+    if (!(std::isfinite(a.albedo[i]) && a.albedo[i] >= 0)) fail("a value is not a number", "albedo table");
+    if (i > 0 && !(a.cos_theta_o[i] > a.cos_theta_o[i - 1])) fail("the nodes do not ascend", "albedo table");
+  }
+  if (a.cos_theta_o.front() != min_cos_theta_o || a.cos_theta_o.back() != 1) {
+    fail("the nodes do not span the hemisphere", "albedo table");
+  }
+  const Domain& d = data.domain;
+  if (std::uint8_t(d.kind) > std::uint8_t(DomainKind::stretched)) fail("unknown domain", "domain");
+  if (!(d.exponent >= 0 && d.exponent < 2)) fail("the exponent is not in [0, 2)", "domain");
+}
+
+}  // namespace reflectree

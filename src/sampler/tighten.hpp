@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Estimated bounds of exact mode: what "exact" rests on for a black box. After growth each leaf's bound is
+// the largest value seen on its grid; here it is attacked, by local maximisation from that point and by
+// random probes where the sampler itself would land, and raised.
+#pragma once
+
+#include "grow.hpp"
+
+namespace reflectree::detail {
+
+// Raises share and cost of the leaves of `slabs` from node index `first_new[s]` on, by local maximisation
+// in (theta_o, x, y), and adds the margin for what it may still miss.
+void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Field& field,
+              const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
+
+// Random probes, `per_leaf` on average and in proportion to the leaf's cost; every overshoot raises its
+// leaf past the value found. Returns the largest mass of overshoot seen in any slab, before the raise.
+float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
+            const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
+
+}  // namespace reflectree::detail
