@@ -100,9 +100,12 @@ class BorderPen {
     }
     if (!a.above || !b.above) return;
     const float v = background_.at(m.x, m.y);
-    const bool bright = range_.at(std::isnan(v) ? 0.0 : double(v)) > 0.62;
+    const double brightness = range_.at(std::isnan(v) ? 0.0 : double(v));
+    // With some inertia, so that a border across an even middle tone is not broken into dashes.
+    const bool joined = last_x_ == a.x && last_y_ == a.y;
+    const bool bright = brightness > (!joined || latest_ == nullptr ? 0.62 : latest_ == &dark_ ? 0.52 : 0.72);
     PathData& data = bright ? dark_ : light_;
-    if (latest_ != &data || last_x_ != a.x || last_y_ != a.y) data.move_to(place_.px(a.x), place_.py(a.y));
+    if (latest_ != &data || !joined) data.move_to(place_.px(a.x), place_.py(a.y));
     data.line_to(place_.px(b.x), place_.py(b.y));
     latest_ = &data;
     last_x_ = b.x;

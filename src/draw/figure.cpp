@@ -47,6 +47,14 @@ color:var(--ink);font-family:"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial
 .rt .fill-2{fill:var(--bars);fill-opacity:.28;stroke:none}
 .rt .box{fill:none;stroke:var(--soft);stroke-width:1}
 .rt .chosen{fill:var(--bars);fill-opacity:.34;stroke:var(--bars);stroke-width:1.6}
+.rt .interval{fill:var(--plane);stroke:var(--soft);stroke-width:.7}
+.rt .box-dashed{fill:none;stroke:var(--rule);stroke-width:1.2;stroke-dasharray:4 4}
+.rt .fit{fill:none;stroke:var(--bars);stroke-width:2.2}
+.rt .corner-in{fill:var(--curve);stroke:var(--curve)}.rt .corner-out{fill:var(--paper);stroke:var(--soft);stroke-width:1.4}
+.rt .cell-night{stroke:#fff;stroke-width:.5;stroke-opacity:.6}.rt .cell-bright{stroke:#1a1030;stroke-width:.5;stroke-opacity:.6}
+.rt .stairs{stroke:var(--ink);stroke-width:1.4}
+.rt .fill-strong{fill:var(--curve);fill-opacity:.75;stroke:none}
+.rt .nested{fill:var(--bars);fill-opacity:.14;stroke:var(--bars);stroke-width:1.5}
 .rt .guide{stroke:var(--soft);stroke-width:1;stroke-dasharray:3 3}
 .rt .whisker{stroke:var(--bars);stroke-width:1;stroke-opacity:.85}
 .rt .accepted{stroke:var(--accept);stroke-width:3.2}

@@ -17,8 +17,8 @@ double Axis::at(double value) const {
 std::vector<Tick> ticks(const Axis& axis, int wanted) {
   std::vector<Tick> out;
   const double slack = 1e-9;
-  if (axis.log) {
-    const double decades = std::log10(axis.hi / axis.lo);
+  const double decades = axis.log ? std::log10(axis.hi / axis.lo) : 0;
+  if (decades > 0.6) {
     const int every = std::max(1, int(std::ceil(decades / wanted)));
     const int first = int(std::ceil(std::log10(axis.lo) - slack)),
               last = int(std::floor(std::log10(axis.hi) + slack));
@@ -39,7 +39,9 @@ std::vector<Tick> ticks(const Axis& axis, int wanted) {
   const int decimals = std::max(0, -int(std::floor(std::log10(step) + slack)));
   for (double k = std::ceil(axis.lo / step - slack); k * step <= axis.hi + slack * step; ++k) {
     const double v = k * step;
-    out.push_back({v, decimals > 4 || std::abs(v) >= 1e5 ? pretty(v, 2) : number(v, decimals)});
+    std::string text = decimals > 4 || std::abs(v) >= 1e5 ? pretty(v, 2) : number(v, decimals);
+    if (text.front() == '-') text.replace(0, 1, "−");
+    out.push_back({v, std::move(text)});
   }
   return out;
 }

@@ -29,6 +29,9 @@ TEST(Ticks, RoundValues) {
   EXPECT_EQ(texts(ticks({0, 37, 0, 1}, 4)), (std::vector<std::string>{"0", "10", "20", "30"}));
   EXPECT_EQ(texts(ticks({0.5, 700, 0, 1, true})), (std::vector<std::string>{"1", "10", "100"}));
   EXPECT_EQ(texts(ticks({0.15, 0.6, 0, 1, true})), (std::vector<std::string>{"0.2", "0.5"}));
+  EXPECT_EQ(texts(ticks({0.8, 1.25, 0, 1, true}, 4)),
+            (std::vector<std::string>{"0.8", "0.9", "1", "1.1", "1.2"}));
+  EXPECT_EQ(texts(ticks({-1, 1, 0, 1}, 4)), (std::vector<std::string>{"−1", "−0.5", "0", "0.5", "1"}));
   EXPECT_EQ(texts(ticks_every({-90, 90, 0, 1}, 45, "°")),
             (std::vector<std::string>{"−90°", "−45°", "0°", "45°", "90°"}));
 }

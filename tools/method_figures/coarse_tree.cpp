@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coarse_tree.hpp"
+
+#include <algorithm>
+
+#include "reflectree/draw/disk_image.hpp"
+#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/domain_map.hpp"
+
+namespace reflectree::method {
+
+namespace {
+
+double share_of(const Cell& c, const Domain& domain) {
+  return double(c.x1 - c.x0) * double(c.y1 - c.y0) / (domain.half ? 2 : 4);
+}
+
+// Follows the fine tree in preorder; below `depth` leaves are merged into the last coarse one.
+class Cutter {
+ public:
+  Cutter(const MajorantTree& fine, const Domain& domain, CoarseTree& coarse)
+      : fine_(fine), coarse_(coarse), domain_(domain), cells_(leaf_cells(fine.nodes, domain)) {
+    for (const std::uint32_t m : fine.mass) total_ += m;
+  }
+
+  void visit(Cell box, int depth) {
+    const Split split = fine_.nodes[node_++];
+    const bool open = depth > 0 && split != Split::leaf;
+    if (depth >= 0) coarse_.nodes.push_back(open ? split : Split::leaf);
+    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0});
+    if (split == Split::leaf) {
+      const double bound =
+          double(fine_.volume) * fine_.mass[leaf_] / total_ / share_of(cells_[leaf_], domain_);
+      coarse_.leaves.back().majorant = std::max(coarse_.leaves.back().majorant, bound);
+      ++leaf_;
+      return;
+    }
+    Cell lower_half = box, upper_half = box;
+    if (split == Split::x) {
+      lower_half.x1 = upper_half.x0 = 0.5f * (box.x0 + box.x1);
+    } else {
+      lower_half.y1 = upper_half.y0 = 0.5f * (box.y0 + box.y1);
+    }
+    const int below = open ? depth - 1 : -1;
+    visit(lower_half, below);
+    visit(upper_half, below);
+  }
+
+ private:
+  const MajorantTree& fine_;
+  CoarseTree& coarse_;
+  Domain domain_;
+  std::vector<Cell> cells_;
+  double total_ = 0;
+  std::size_t node_ = 0, leaf_ = 0;
+};
+
+}  // namespace
+
+double normalised_target(const Example& example, Vec2<float> p) {
+  const DomainPoint point = lift(example.data.domain, example.wo, p);
+  if (point.projected_area <= 0) return 0;
+  const Spectrum value = example.f(point.geometry);
+  return double(example.data.target(value) * point.projected_area /
+                albedo_at(example.data.albedo, example.wo.z));
+}
+
+CoarseTree cut(const Example& example, int depth) {
+  const Domain& domain = example.data.domain;
+  CoarseTree coarse;
+  Cutter(example.data.exact.at(draw::slab_of(example.data.exact_partition, example.wo)), domain, coarse)
+      .visit({-1, 1, domain.half ? 0.f : -1.f, 1}, depth);
+  for (CoarseLeaf& leaf : coarse.leaves) {
+    constexpr int n = 48;
+    for (int k = 0; k < n * n; ++k) {
+      const float u = (float(k % n) + 0.5f) / n, v = (float(k) / n + 0.5f / n) / n;
+      const Cell& c = leaf.cell;
+      leaf.integral +=
+          normalised_target(example, {lerp(u, c.x0, c.x1), lerp(v, c.y0, c.y1)}) * leaf.share / (n * n);
+    }
+  }
+  return coarse;
+}
+
+std::string rgb_text(double t) {
+  const draw::Rgb8 c = draw::colour(t);
+  return "rgb(" + std::to_string(c.r) + "," + std::to_string(c.g) + "," + std::to_string(c.b) + ")";
+}
+
+std::string cell_rectangle(const Cell& cell, const Domain& domain, double x, double y, double width,
+                           std::string_view css_class, std::string_view fill) {
+  using draw::number;
+  const double half = width / 2, bottom = y + (domain.half ? half : width), y0 = domain.half ? 0 : -1;
+  return draw::element("rect", {{"class", css_class},
+                                {"x", number(x + half * double(cell.x0 + 1))},
+                                {"y", number(bottom - half * (double(cell.y1) - y0))},
+                                {"width", number(half * double(cell.x1 - cell.x0))},
+                                {"height", number(half * double(cell.y1 - cell.y0))},
+                                {"fill", fill}}) +
+         "\n";
+}
+
+}  // namespace reflectree::method

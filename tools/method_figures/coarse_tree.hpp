@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// A built tree cut off at a depth, so that a picture can show all of it.
+#pragma once
+
+#include <vector>
+
+#include "figures.hpp"
+#include "reflectree/draw/svg.hpp"
+
+namespace reflectree::method {
+
+struct CoarseLeaf {
+  Cell cell;
+  double share = 0;     // of the square
+  double majorant = 0;  // the largest of the leaves within
+  double integral = 0;  // of T / albedo over the leaf, for one wo
+  double volume() const { return share * majorant; }
+};
+
+struct CoarseTree {
+  std::vector<Split> nodes;        // preorder
+  std::vector<CoarseLeaf> leaves;  // in preorder
+};
+
+// The exact tree of the slab of wo.
+CoarseTree cut(const Example& example, int depth);
+
+// T / albedo at a point of the square.
+double normalised_target(const Example& example, Vec2<float> p);
+
+// A leaf's rectangle on a drawn square whose left upper corner is (x, y).
+std::string cell_rectangle(const Cell& cell, const Domain& domain, double x, double y, double width,
+                           std::string_view css_class, std::string_view fill = {});
+std::string rgb_text(double t);  // colour(t) for a fill
+
+}  // namespace reflectree::method

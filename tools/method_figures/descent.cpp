@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Step 5: choosing a leaf. Left: every level of the tree as intervals of [0, 1), as wide as the probability
+// of their nodes; the random number falls straight through. Right: the nested cells that it chooses.
+#include <algorithm>
+
+#include "coarse_tree.hpp"
+
+namespace reflectree::method {
+
+using namespace draw;
+
+namespace {
+
+struct Node {
+  int depth;
+  double from, to;  // the interval
+  Cell cell;
+};
+
+// All nodes of the tree with their intervals.
+class Walk {
+ public:
+  explicit Walk(const CoarseTree& tree) : tree_(tree) {
+    for (const CoarseLeaf& leaf : tree.leaves) total_ += leaf.volume();
+  }
+  std::vector<Node> nodes;
+
+  double visit(Cell cell, int depth, double from) {
+    const std::size_t self = nodes.size();
+    nodes.push_back({depth, from, from, cell});
+    const Split split = tree_.nodes[node_++];
+    double to = from;
+    if (split == Split::leaf) {
+      to += tree_.leaves[leaf_++].volume() / total_;
+    } else {
+      Cell lower_half = cell, upper_half = cell;
+      if (split == Split::x) {
+        lower_half.x1 = upper_half.x0 = 0.5f * (cell.x0 + cell.x1);
+      } else {
+        lower_half.y1 = upper_half.y0 = 0.5f * (cell.y0 + cell.y1);
+      }
+      to = visit(upper_half, depth + 1, visit(lower_half, depth + 1, from));
+    }
+    nodes[self].to = to;
+    return to;
+  }
+
+ private:
+  const CoarseTree& tree_;
+  double total_ = 0;
+  std::size_t node_ = 0, leaf_ = 0;
+};
+
+}  // namespace
+
+Figure descent_figure(const Example& example) {
+  const Domain& domain = example.data.domain;
+  constexpr int depth = 5;
+  constexpr double u = 0.73;
+  const CoarseTree tree = cut(example, depth);
+  Walk walk(tree);
+  const Cell root{-1, 1, domain.half ? 0.f : -1.f, 1};
+  walk.visit(root, 0, 0);
+
+  Figure figure{840, 330, "Choosing a leaf", {}, {}};
+  figure.description =
+      "Each level of the tree divides the unit interval in proportion to its nodes' volumes; the random "
+      "number 0.73 falls through nested intervals to a leaf, and chooses nested cells of the square.";
+  const double left = 62, width = 400, top = 66, row = 34;
+  figure.body =
+      label(16, 26, "Choosing a leaf in proportion to its volume *V* = area × bound", Anchor::start, "head");
+  for (const Node& n : walk.nodes) {
+    const bool hit = u >= n.from && u < n.to;
+    figure.body += rectangle(left + width * n.from, top + row * n.depth + 3,
+                             std::max(width * (n.to - n.from), 0.4), row - 6, hit ? "chosen" : "interval");
+  }
+  for (int d = 0; d <= depth; ++d) {
+    figure.body += label(left - 8, top + row * d + row / 2 + 4,
+                         d == 0 ? "root" : "level " + std::to_string(d), Anchor::end, "tick");
+  }
+  const double x = left + width * u, bottom = top + row * (depth + 1);
+  PathData arrow;
+  arrow.move_to(x, top - 12);
+  arrow.line_to(x, bottom + 6);
+  arrow.move_to(x - 3.5, bottom);
+  arrow.line_to(x, bottom + 6);
+  arrow.line_to(x + 3.5, bottom);
+  figure.body += path(arrow, "arrow") + label(x, top - 18, "*u* = 0.73", Anchor::middle, "label");
+  figure.body += line(left, bottom + 14, left + width, bottom + 14, "axis");
+  for (const int k : {0, 1}) {
+    figure.body += label(left + width * k, bottom + 28, std::to_string(k), Anchor::middle, "tick");
+  }
+
+  const double side = 310, square_left = 506, square_top = domain.half ? top + 24 : 40;
+  for (const CoarseLeaf& leaf : tree.leaves) {
+    figure.body += cell_rectangle(leaf.cell, domain, square_left, square_top, side, "interval");
+  }
+  for (const Node& n : walk.nodes) {
+    if (u >= n.from && u < n.to)
+      figure.body += cell_rectangle(n.cell, domain, square_left, square_top, side, "nested");
+  }
+  const double below = square_top + (domain.half ? side / 2 : side);
+  figure.body +=
+      label(square_left, below + 20, "the same nodes as cells of the square", Anchor::start, "note");
+  return figure;
+}
+
+}  // namespace reflectree::method

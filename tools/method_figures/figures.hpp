@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The figures of docs/method.md, one function a step of the method.
+#pragma once
+
+#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/draw/figure.hpp"
+#include "reflectree/sampler/sampler_data.hpp"
+
+namespace reflectree::method {
+
+// The material of all figures but where a figure names another: red plastic, built by build().
+struct Example {
+  AnyBrdf f;
+  SamplerData data;
+  Direction wo;  // 50 degrees
+};
+Example make_example();
+
+draw::Figure problem_figure(const Example& example);
+draw::Figure domains_figure();
+draw::Figure albedo_figure();
+draw::Figure normalised_bounds_figure();
+draw::Figure tree_growth_figure(const Example& example);
+draw::Figure descent_figure(const Example& example);
+draw::Figure corner_codes_figure();
+draw::Figure rejection_figure(const Example& example);
+draw::Figure restart_figure(const Example& example);
+draw::Figure one_shot_figure(const Example& example);
+
+}  // namespace reflectree::method
