@@ -229,11 +229,10 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
                          std::uint64_t* evaluations) {
   const double cubature_error = 0.3 * double(relative_error),
                interpolation_error = 0.2 * double(relative_error);
+  // Panels of at most 7.5 degrees, and octaves towards the horizon.
   std::vector<double> borders;
-  for (const float c :
-       {min_cos_theta_o, 0x1p-13f, 0x1p-10f, 0x1p-7f, 0x1p-5f, 0x1p-3f, 0.3f, 0.6f, 0.875f, 1.f}) {
-    borders.push_back(std::acos(double(c)));
-  }
+  for (int i = 0; i < 12; ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);
+  for (const int octave : {4, 5, 7, 10, 13, 17}) borders.push_back(std::acos(std::ldexp(1., -octave)));
   for (const float theta : field.f.traits().theta_o_knots) {
     if (theta > 1e-3f && cos(theta) > 1.5f * min_cos_theta_o) borders.push_back(double(theta));
   }
@@ -269,7 +268,7 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
         miss = max(miss, std::abs(interpolate(v, 2, i) - v[std::size_t(i)]));
         scale = max(scale, v[std::size_t(i)]);
       }
-      if (miss > 2 * interpolation_error * scale && level < 10) {
+      if (miss > 5 * interpolation_error * scale && level < 10) {
         const double mid = node_of(panel, 2);
         next.push_back({panel.lo, mid}), next.push_back({mid, panel.hi});
       } else {
