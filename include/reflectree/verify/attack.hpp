@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks for points where a bound is exceeded, and bounds the mass that lies above it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "reflectree/sampler/host.hpp"
+#include "reflectree/verify/erased.hpp"
+#include "reflectree/verify/result.hpp"
+
+namespace reflectree {
+
+// Coordinates in [0, 1]: elevation of wo, then the place of wi in whatever map the sampler uses.
+using AttackPoint = std::array<double, 3>;
+// ratio[i] = T / (a M) at points[i]: above 1 the bound is exceeded.
+using RatioFunction = std::function<void(std::span<const AttackPoint> points, std::span<double> ratio)>;
+
+struct AttackOptions {
+  std::size_t probes = 1 << 18;  // scrambled Sobol' points, from the best of which local searches start
+  std::size_t climbs = 256;
+  int steps = 60;  // of each local search
+  std::uint64_t seed = 1;
+};
+struct AttackResult {
+  double worst = 0;  // the largest ratio found
+  AttackPoint at{};
+  std::uint64_t evaluations = 0, overshoots = 0;
+};
+AttackResult attack(const RatioFunction& ratio, const AttackOptions& options = {}, const Host& host = {});
+
+// One trial of an exact sampler for a random wo: the ratio T / (a M) at the proposed point.
+using RatioTrial = std::function<double(Pcg32& u)>;
+
+// The overshooting mass 1 - int min(T, aM) / int T = E[(r - 1)+] / E[r] over trials, by which the density
+// drawn differs at most. upper: 95 % bound, the smaller of two at 97.5 % each: the rate of overshoots
+// (Clopper- Pearson) times the largest excess, which is tight when none is seen; and the empirical Bernstein
+// bound of the mean, tight when many are small. Both need the largest possible excess: the worst that the
+// trials or a preceding attack found.
+struct OvershootMass {
+  double estimate = 0, upper = 0, worst = 0;
+  std::uint64_t trials = 0, overshoots = 0;
+};
+OvershootMass overshoot_mass(const RatioTrial& trial, std::uint64_t trials, double attacked_worst = 1,
+                             std::uint64_t seed = 1, const Host& host = {});
+
+CheckResult check_overshoot(const OvershootMass& mass, double limit = 1e-6);
+
+}  // namespace reflectree

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bins of nearly equal probability over the hemisphere, from cubature alone: a k-d tree over the chart,
+// halved at the median mass, then the mass of every bin by a cubature of its own.
+#pragma once
+
+#include <vector>
+
+#include "reflectree/sampler/host.hpp"
+#include "reflectree/verify/reference.hpp"
+
+namespace reflectree {
+
+struct Bins {
+  Direction wo;
+  HemisphereChart chart;
+  struct Node {
+    bool split_x = false;
+    double at = 0;
+    int lower = -1, upper = -1;  // nodes; negative: bin number -1 - value
+  };
+  std::vector<Node> nodes;  // the root first; empty: a single bin
+  std::vector<Rectangle> boxes;
+  std::vector<double> mass;  // integral of t cos_i over each bin
+  double total = 0;          // their sum
+  double worst_error = 0;    // largest relative error bound among them
+
+  std::size_t find(Direction wi) const;
+};
+
+struct BinOptions {
+  int count = 400;
+  double tolerance = 3e-4;  // relative, of each mass; biases chi-square by less than samples * tolerance^2
+};
+
+// No bins at all where the albedo is zero.
+Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& options = {},
+                     const Host& host = {});
+
+// The integral of the sampler's own density over each bin; its density may jump anywhere.
+std::vector<double> density_masses(const ErasedSampler& sampler, const Bins& bins, double tolerance = 1e-3,
+                                   const Host& host = {});
+
+}  // namespace reflectree

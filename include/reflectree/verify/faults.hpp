@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Planted faults: the twins that every check must reject. Each wraps a sampler and spoils one thing.
+#pragma once
+
+#include "reflectree/verify/erased.hpp"
+
+namespace reflectree {
+
+// Density bent by +-amount according to the sign of a coordinate (0, 1, 2: x, y, z) of wi - pivot; pdf and
+// weight are claimed as before. Choose coordinate and pivot so that both signs occur.
+ErasedSampler bent(ErasedSampler sampler, int coordinate, double amount = 0.02, Direction pivot = {});
+
+// pdf(wi, wo) for pdf(wo, wi).
+ErasedSampler swapped_pdf(ErasedSampler sampler);
+// t(wi, wo) for t(wo, wi): invisible where the function is reciprocal.
+TargetFunction swapped(TargetFunction f);
+
+// Directions inside a cone about `axis` are never drawn.
+ErasedSampler lost_support(ErasedSampler sampler, Direction axis, float cos_angle);
+
+// pdf, both claimed and asked, times a factor; the weight stays.
+ErasedSampler scaled_pdf(ErasedSampler sampler, float factor);
+// Weight times a factor.
+ErasedSampler scaled_weight(ErasedSampler sampler, float factor);
+
+// One of `period` samples is "no sample".
+ErasedSampler dying(ErasedSampler sampler, std::uint32_t period);
+
+}  // namespace reflectree

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/verify/bins.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parallel.hpp"
+#include "reflectree/math/sum.hpp"
+
+namespace reflectree {
+namespace {
+
+using Regions = std::vector<CubatureRegion>;
+
+double lo(const Rectangle& r, bool x) { return x ? r.x0 : r.y0; }
+double hi(const Rectangle& r, bool x) { return x ? r.x1 : r.y1; }
+
+// The share of a region below `at`, its mass taken as uniform: good enough to place borders.
+double share_below(const Rectangle& r, bool x, double at) {
+  return std::clamp((at - lo(r, x)) / (hi(r, x) - lo(r, x)), 0., 1.);
+}
+
+double mass_below(const Regions& regions, bool x, double at) {
+  double mass = 0;
+  for (const auto& r : regions) mass += r.value * share_below(r.box, x, at);
+  return mass;
+}
+
+double spread(const Regions& regions, bool x) {
+  double mass = 0, first = 0, second = 0;
+  for (const auto& r : regions) {
+    const double c = 0.5 * (lo(r.box, x) + hi(r.box, x));
+    mass += r.value;
+    first += r.value * c;
+    second += r.value * (c * c + sqr(hi(r.box, x) - lo(r.box, x)) / 12);
+  }
+  return mass > 0 ? second / mass - sqr(first / mass) : 0;
+}
+
+double quantile(const Regions& regions, bool x, double mass, double a, double b) {
+  for (int i = 0; i < 45; ++i) {
+    const double middle = 0.5 * (a + b);
+    (mass_below(regions, x, middle) < mass ? a : b) = middle;
+  }
+  return 0.5 * (a + b);
+}
+
+Regions part(const Regions& regions, bool x, double at, bool upper) {
+  Regions result;
+  for (CubatureRegion r : regions) {
+    const double below = share_below(r.box, x, at);
+    r.value *= upper ? 1 - below : below;
+    if (!(r.value > 0)) continue;
+    if (below > 0 && below < 1) (x ? (upper ? r.box.x0 : r.box.x1) : (upper ? r.box.y0 : r.box.y1)) = at;
+    result.push_back(r);
+  }
+  return result;
+}
+
+// Returns the node's number, or -1 - bin.
+int divide(Bins& bins, const Regions& regions, const Rectangle& box, int count) {
+  if (count <= 1) {
+    bins.boxes.push_back(box);
+    return -int(bins.boxes.size());
+  }
+  const bool x = spread(regions, true) >= spread(regions, false);
+  double mass = 0;
+  for (const auto& r : regions) mass += r.value;
+  const int lower_count = count / 2;
+  const double at = quantile(regions, x, mass * lower_count / count, lo(box, x), hi(box, x));
+  Rectangle below = box, above = box;
+  (x ? below.x1 : below.y1) = at;
+  (x ? above.x0 : above.y0) = at;
+  const auto node = bins.nodes.size();
+  bins.nodes.push_back({x, at, 0, 0});
+  const int lower = divide(bins, part(regions, x, at, false), below, lower_count);
+  const int upper = divide(bins, part(regions, x, at, true), above, count - lower_count);
+  bins.nodes[node].lower = lower;
+  bins.nodes[node].upper = upper;
+  return int(node);
+}
+
+// Over a box cut at the lines where the chart's grading turns, so that no region straddles its kinks.
+CubatureResult integrate(const Integrand& f, const Rectangle& box, const CubatureOptions& options) {
+  CubatureResult total;
+  total.converged = true;
+  for (double x0 = box.x0; x0 < box.x1;) {
+    const double x1 = std::min(box.x1, std::floor(x0) + 1);
+    for (double y0 = box.y0; y0 < box.y1;) {
+      const double y1 = std::min(box.y1, std::floor(y0) + 1);
+      const CubatureResult r = cubature(f, {x0, x1, y0, y1}, options);
+      total.value += r.value;
+      total.error += r.error;
+      total.evaluations += r.evaluations;
+      total.converged = total.converged && r.converged;
+      y0 = y1;
+    }
+    x0 = x1;
+  }
+  return total;
+}
+
+}  // namespace
+
+std::size_t Bins::find(Direction wi) const {
+  const Vec2<double> p = chart.coordinates({wi.x, wi.y, wi.z});
+  int i = nodes.empty() ? -1 : 0;
+  while (i >= 0) {
+    const Node& n = nodes[std::size_t(i)];
+    i = (n.split_x ? p.x : p.y) < n.at ? n.lower : n.upper;
+  }
+  return std::size_t(-1 - i);
+}
+
+Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& options, const Host& host) {
+  const Vec3<double> w = normalize(Vec3<double>{wo.x, wo.y, wo.z});
+  Bins bins{wo, w.z > 0 ? choose_chart(f, w) : HemisphereChart({0, 0, 1}), {}, {}, {}, 0, 0};
+  if (!(w.z > 0)) return bins;
+  const Integrand integrand = chart_integrand(f, w, bins.chart);
+
+  CubatureOptions coarse;
+  coarse.relative_tolerance = 1e-3;
+  coarse.max_evaluations = 400'000;
+  coarse.cells_x = 96;  // ten regions a bin: a region's mass is taken as uniform
+  coarse.cells_y = 48;
+  Regions regions;
+  const CubatureResult whole = cubature(integrand, HemisphereChart::domain, coarse, regions);
+  if (!(whole.value > 0)) return bins;
+  for (auto& r : regions) r.value = std::max(r.value, 0.);  // a rule with a negative weight may undershoot
+  divide(bins, regions, HemisphereChart::domain, options.count);
+
+  bins.mass.resize(bins.boxes.size());
+  std::vector<double> errors(bins.boxes.size());
+  CubatureOptions fine;
+  fine.relative_tolerance = options.tolerance;
+  fine.absolute_tolerance = 0.1 * options.tolerance * whole.value / options.count;
+  fine.max_evaluations = 200'000;
+  fine.cells_x = fine.cells_y = 2;
+  detail::for_each_index(host, f.concurrent, bins.boxes.size(), [&](std::size_t i) {
+    const CubatureResult r = integrate(integrand, bins.boxes[i], fine);
+    bins.mass[i] = r.value;
+    errors[i] = r.error;
+  });
+  Sum total;
+  for (std::size_t i = 0; i < bins.mass.size(); ++i) {
+    total += bins.mass[i];
+    if (bins.mass[i] > 0) bins.worst_error = std::max(bins.worst_error, errors[i] / bins.mass[i]);
+  }
+  bins.total = total.value();
+  return bins;
+}
+
+std::vector<double> density_masses(const ErasedSampler& sampler, const Bins& bins, double tolerance,
+                                   const Host& host) {
+  std::vector<double> mass(bins.boxes.size());
+  const Integrand integrand = chart_integrand(sampler, bins.wo, bins.chart);
+  CubatureOptions options;
+  options.relative_tolerance = tolerance;
+  options.absolute_tolerance = 0.1 * tolerance / double(std::max<std::size_t>(mass.size(), 1));
+  options.max_evaluations = 60'000;
+  options.cells_x = options.cells_y = 4;
+  detail::for_each_index(host, sampler.concurrent, mass.size(), [&](std::size_t i) {
+    mass[i] = integrate(integrand, bins.boxes[i], options).value;
+  });
+  return mass;
+}
+
+}  // namespace reflectree
