@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view magic{"tensor_file\0", 12};
 constexpr std::uint32_t max_fields = 64;
+constexpr std::size_t max_name = 64;
 constexpr float largest = 1e9f, smallest_sigma = 1e-6f;  // of plausible values: products stay finite
 constexpr std::uint64_t max_side = 4096;  // of any grid: keeps index arithmetic far from overflow
 enum : std::uint8_t { type_u8 = 1, type_f32 = 10, type_last = 11 };
@@ -40,6 +41,7 @@ std::map<std::string, Tensor> read_tensors(ByteView bytes, const std::string& wh
   std::map<std::string, Tensor> tensors;
   for (std::uint32_t i = 0; i < fields; ++i) {
     const std::string name = in.text(in.u16());
+    if (name.size() > max_name) damaged("a field's name of " + std::to_string(name.size()) + " bytes", where);
     Tensor t;
     const int dimensions = in.u16();
     t.type = in.u8();

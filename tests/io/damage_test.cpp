@@ -102,6 +102,12 @@ TEST(Damage, RglWithImpossibleSizes) {
   EXPECT_FALSE(read(synthetic::rgl_file(dark)).refused);
 }
 
+TEST(Damage, ControlCharactersOfAFileDoNotReachTheTerminal) {
+  auto fields = synthetic::rgl_fields({});
+  fields[4] = {"a\nb\x1b[31m", 10, {1U << 30U}, {}};
+  EXPECT_NE(read(synthetic::tensor_file(fields)).words.find("'a?b?[31m'"), std::string::npos);
+}
+
 TEST(Damage, Merl) {
   Bytes bytes = write_merl(tabulate_merl(Lambert{}));
   EXPECT_FALSE(read(bytes).refused);

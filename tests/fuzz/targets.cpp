@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "targets.hpp"
+
+#include <cstdlib>
+
+#include "../io/synthetic.hpp"
+#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/registry.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/io/material_file.hpp"
+#include "reflectree/io/merl.hpp"
+#include "reflectree/io/parameter_table.hpp"
+#include "reflectree/io/rgl.hpp"
+
+namespace reflectree::fuzz {
+namespace {
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+void require_sound(const AnyBrdf& f) {
+  const Direction up{0, 0, 1}, tilted{0.6f, 0, 0.8f}, mirror{-0.6f, 0, 0.8f}, aside{0, 0.96f, 0.28f},
+      grazing{0.99999995f, 0, 1.7453292e-5f};
+  const Direction wo[] = {up, tilted, tilted, aside, grazing, grazing, mirror, grazing};
+  const Direction wi[] = {up, mirror, aside, tilted, tilted, grazing, grazing, mirror};
+  std::vector<float> values(std::size(wo) * std::size_t(f.channels()));
+  f.eval(wo, wi, values);
+  for (const float v : values) require(v >= 0 && std::isfinite(v));
+}
+
+template <class Run>
+void expect_error_or_success(Run run) {
+  try {
+    run();
+  } catch (const Error& e) {
+    require(std::string_view(e.what()).find('\n') == std::string_view::npos);
+  }
+}
+
+void run_rgl(ByteView bytes) {
+  expect_error_or_success([&] { require_sound(read_rgl(bytes, "rgl")); });
+}
+
+// The header as it comes; behind a good one, the rest repeated up to the length that the format wants.
+void run_merl(ByteView bytes) {
+  expect_error_or_success([&] { read_merl(bytes, "merl"); });
+  if (!is_merl_file(bytes) || bytes.size() < 20) return;
+  Bytes whole(bytes.begin(), bytes.begin() + 12);
+  const std::uint64_t size = 12 + std::uint64_t(90 * 90 * 24) * (bytes[8] == 180 ? 180U : 360U);
+  whole.reserve(size);
+  while (whole.size() < size) whole.push_back(bytes[12 + (whole.size() - 12) % (bytes.size() - 12)]);
+  expect_error_or_success([&] {
+    HalfAngleTable table = read_merl(whole, "merl");
+    require_sound(table);
+    table.lookup = TableLookup::linear;
+    require_sound(table);
+  });
+}
+
+void run_table(ByteView bytes) {
+  expect_error_or_success([&] {
+    const ParameterTable table = read_parameter_table(bytes, "table");
+    for (const ParameterTable::Row& row : table.rows) require(row.values.size() == table.columns.size());
+  });
+  for (const char* member : {"", "one", "varnish"}) {
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "table", member)); });
+  }
+}
+
+void run_material(ByteView bytes) {
+  for (const char* member : {"", "two", "linear"}) {
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "file", member)); });
+  }
+}
+
+// Any text; what can be parsed prints and parses back to itself, and is a sound BRDF if it is one at all.
+void run_grammar(ByteView bytes) {
+  const std::string text(bytes.begin(), bytes.end());
+  expect_error_or_success([&] {
+    const Material material = parse_material(text);
+    const std::string canonical = to_text(material);
+    const Material again = parse_material(canonical);
+    require(again == material && to_text(again) == canonical);
+    for (const MaterialTerm& term : material.terms) {
+      if (term.model.rfind("baked_", 0) == 0) return;  // takes too long for a fuzzer
+    }
+    const AnyBrdf f = make_brdf(material);
+    require(f.channels() >= 1 && f.channels() <= max_channels);
+  });
+}
+
+std::vector<Bytes> rgl_seeds() {
+  synthetic::RglRecipe small;
+  small.width = small.height = small.colours = small.nodes = 2;
+  small.theta_o = {0.f, 1.5f};
+  return {synthetic::rgl_file(), synthetic::rgl_file(small)};
+}
+std::vector<Bytes> merl_seeds() {
+  std::vector<Bytes> seeds;
+  for (const std::uint32_t n : {180U, 360U}) {
+    Bytes seed;
+    for (const std::uint32_t v : {90U, 90U, n}) append_u32(seed, v);
+    for (const double v : {0.0, 1.0, -1.0, 1e300}) append_f64(seed, v);
+    seeds.push_back(seed);
+  }
+  return seeds;
+}
+std::vector<Bytes> table_seeds() {
+  return {synthetic::as_bytes(synthetic::neural_csv()), synthetic::as_bytes(synthetic::sgd_csv()),
+          synthetic::as_bytes(synthetic::abc_csv())};
+}
+std::vector<Bytes> material_seeds() {
+  std::vector<Bytes> seeds = rgl_seeds();
+  for (auto more : {merl_seeds(), table_seeds()}) seeds.insert(seeds.end(), more.begin(), more.end());
+  return seeds;
+}
+std::vector<Bytes> grammar_seeds() {
+  std::vector<Bytes> seeds{
+      synthetic::as_bytes("0.3*lambert:rho=0.5 + ggx:alpha=0.1,f0=1/0.8/0.3"),
+      synthetic::as_bytes("dir/file.csv#member + \"a \\\"b\\\\\"#\"c d\" + 1e-3*x.bsdf")};
+  for (const ModelInfo& model : models()) seeds.push_back(synthetic::as_bytes(std::string(model.name)));
+  return seeds;
+}
+
+}  // namespace
+
+std::span<const Target> targets() {
+  static const Target all[] = {{"rgl", run_rgl, rgl_seeds},
+                               {"merl", run_merl, merl_seeds},
+                               {"table", run_table, table_seeds},
+                               {"material", run_material, material_seeds},
+                               {"grammar", run_grammar, grammar_seeds}};
+  return all;
+}
+
+}  // namespace reflectree::fuzz

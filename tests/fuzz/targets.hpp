@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is fuzzed: each target feeds arbitrary bytes to one reader. Error is a fine answer; whatever is
+// accepted must evaluate to finite values that are not negative; anything else aborts.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "reflectree/io/bytes.hpp"
+
+namespace reflectree::fuzz {
+
+struct Target {
+  std::string_view name;
+  void (*run)(ByteView bytes);
+  std::vector<Bytes> (*seeds)();  // small valid inputs, made from formulas
+};
+
+// rgl, merl, table, material, grammar
+std::span<const Target> targets();
+
+}  // namespace reflectree::fuzz
