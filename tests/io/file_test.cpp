@@ -54,6 +54,18 @@ TEST(File, ErrorsAreOneLineWithWhatWhereAndHow) {
   }
 }
 
+TEST(File, OversizedMaterialsAreRefusedBeforeTheyAreParsed) {
+  const TemporaryFolder folder("file");
+  write_file_atomically(folder / "big", "material,a\n");
+  std::filesystem::resize_file(folder / "big", 100'000'000);  // sparse
+  try {
+    load_brdf(folder / "big");
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("larger than 69984012 bytes"), std::string::npos) << e.what();
+  }
+}
+
 TEST(File, AFailedWriteKeepsTheOldFile) {
   const TemporaryFolder folder("file");
   std::filesystem::create_directories(folder / "taken/inside");  // a folder cannot be replaced by a file
