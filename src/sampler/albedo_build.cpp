@@ -87,6 +87,23 @@ void start(Integral& integral, const Domain& domain) {
       integral.regions.push_back({-1 + (2 * i + 1) * hx, y0 + (2 * j + 1) * hy, hx, hy});
     }
   }
+  // Close in on the landmarks, so that no needle there falls between the points.
+  constexpr double narrow = 1. / 128;
+  for (int k = 0; k < landmark_count; ++k) {
+    const Vec2<float> p = landmark(domain, integral.cos_theta_o, k);
+    for (std::size_t i = 0; i < integral.regions.size(); ++i) {
+      Region& r = integral.regions[i];
+      const bool inside = std::abs(double(p.x) - r.x) <= r.hx && std::abs(double(p.y) - r.y) <= r.hy;
+      if (!inside || max(r.hx, r.hy) <= narrow) continue;
+      r.split_x = r.hx >= r.hy;
+      (r.split_x ? r.hx : r.hy) /= 2;
+      Region upper = r;
+      (r.split_x ? r.x : r.y) -= r.split_x ? r.hx : r.hy;
+      (r.split_x ? upper.x : upper.y) += r.split_x ? r.hx : r.hy;
+      integral.regions.push_back(upper);
+      --i;  // look at the lower half again
+    }
+  }
 }
 
 void advance(Integral& integral, double relative_error) {

@@ -20,7 +20,7 @@ using namespace detail;
 
 constexpr float theta_max = 1.5707887f;  // cos = min_cos_theta_o, rounded outwards
 
-std::vector<Slab> first_slabs(const std::vector<float>& knots, const AlbedoTable& albedo) {
+std::vector<Slab> first_slabs(const std::vector<float>& knots, const AlbedoTable& albedo, const Domain& domain) {
   std::vector<float> borders{0, theta_max};
   for (const float theta : knots) {
     if (theta > 1e-4f && theta < theta_max - 1e-4f) borders.push_back(theta);
@@ -29,7 +29,7 @@ std::vector<Slab> first_slabs(const std::vector<float>& knots, const AlbedoTable
   borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
   std::vector<Slab> slabs;
   for (std::size_t i = 0; i + 1 < borders.size(); ++i)
-    slabs.push_back(make_slab(borders[i], borders[i + 1], albedo));
+    slabs.push_back(make_slab(borders[i], borders[i + 1], albedo, domain));
   return slabs;
 }
 
@@ -161,7 +161,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& options, const Host& hos
 
   data.albedo = build_albedo(field, options.albedo_error, host, &data.report.evaluations);
   host.progress(0.4f);
-  const std::vector<Slab> slabs = first_slabs(f.traits().theta_o_knots, data.albedo);
+  const std::vector<Slab> slabs = first_slabs(f.traits().theta_o_knots, data.albedo, data.domain);
 
   const std::vector<Slab> exact = build_exact(slabs, field, data.albedo, options, host, data.report);
   data.exact_partition = partition_of(exact);

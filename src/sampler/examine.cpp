@@ -132,7 +132,7 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
         Domain{DomainKind::stretched, half, 1.5f}}) {
     std::vector<Slab> slabs;
     for (const auto& t : trials)
-      slabs.push_back(make_slab(t.theta * degree, (t.theta + t.width) * degree, flat));
+      slabs.push_back(make_slab(t.theta * degree, (t.theta + t.width) * degree, flat, domain));
     std::uint64_t evaluations = 0;
     const Field field{f, options.target, domain, half && !seen.mirror_symmetric};
     grow(slabs, field, flat, rules, host, &evaluations);

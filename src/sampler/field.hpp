@@ -28,6 +28,13 @@ inline Direction wo_from_cosine(float cos_theta_o) {
   return {sqrt(max((1 - cos_theta_o) * (1 + cos_theta_o), 0.f)), 0, cos_theta_o};
 }
 
+// Where reflectance functions hide needles that a grid steps over: the mirror direction of wo, and wo itself.
+inline constexpr int landmark_count = 2;
+inline Vec2<float> landmark(const Domain& domain, float cos_theta_o, int i) {
+  const Direction wo = wo_from_cosine(cos_theta_o);
+  return lower(domain, wo, i == 0 ? Direction{-wo.x, 0, wo.z} : wo);
+}
+
 struct Field {
   AnyBrdf f;
   Target target;

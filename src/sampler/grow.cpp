@@ -34,32 +34,61 @@ void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicC
   }
 }
 
+// A landmark inside a leaf, at one of its slab's cosines.
+struct Visit {
+  std::size_t task;
+  int theta;
+};
+
 // Evaluates the tasks in one batch and analyses each leaf.
-void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Field& field,
-              const GrowthRules& rules, const Host& host, std::uint64_t* evaluations) {
+void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Field& field, const GrowthRules& rules,
+              const Host& host, std::uint64_t* evaluations) {
   std::vector<FieldPoint> points;
   points.reserve(tasks.size() * grid_points);
   for (const Task& task : tasks) {
     const Slab& slab = slabs[task.slab];
     add_points(points, slab, slab.nodes[task.node].leaf.cell, field.domain);
   }
+  std::vector<Visit> visits;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const Slab& slab = slabs[tasks[t].slab];
+    const Box box = box_of(slab.nodes[tasks[t].node].leaf.cell, field.domain);
+    for (std::size_t k = 0; k < theta_nodes; ++k) {
+      for (const Vec2<float>& p : slab.landmarks[k]) {
+        if (!contains(box, p)) continue;
+        visits.push_back({t, int(k)});
+        points.push_back({slab.cos_theta_o[k], p});
+      }
+    }
+  }
   std::vector<FieldValue> values(points.size());
   eval_in_parallel(field, host, points, values);
   *evaluations += points.size();
+  const auto normalised = [&](const Slab& slab, std::size_t theta, std::size_t i) {
+    const float a = slab.albedo[theta];
+    return a > 0 ? FieldValue{values[i].mean / a, values[i].upper / a} : FieldValue{0, 0};
+  };
+  const auto note = [&](const Slab& slab, Leaf& leaf, std::size_t theta, std::size_t i, float value) {
+    if (!(value > leaf.seen)) return;
+    leaf.seen = value;
+    leaf.seen_theta = lerp(0.5f * float(theta), slab.theta_lo, slab.theta_hi);
+    leaf.seen_at = points[i].p;
+  };
+  for (std::size_t v = 0; v < visits.size(); ++v) {
+    const std::size_t i = tasks.size() * grid_points + v, theta = std::size_t(visits[v].theta);
+    Slab& slab = slabs[tasks[visits[v].task].slab];
+    note(slab, slab.nodes[tasks[visits[v].task].node].leaf, theta, i, normalised(slab, theta, i).upper);
+  }
   host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Slab& slab = slabs[tasks[t].slab];
       Leaf& leaf = slab.nodes[tasks[t].node].leaf;
       Grid grid;
-      std::size_t best = 0;
       for (std::size_t i = 0; i < grid.size(); ++i) {
-        const float a = slab.albedo[i / (grid_size * grid_size)];
-        const FieldValue v = values[t * grid_points + i];
-        grid[i] = a > 0 ? FieldValue{v.mean / a, v.upper / a} : FieldValue{0, 0};
-        if (grid[i].upper > grid[best].upper) best = i;
+        const std::size_t theta = i / (grid_size * grid_size);
+        grid[i] = normalised(slab, theta, t * grid_points + i);
+        note(slab, leaf, theta, t * grid_points + i, grid[i].upper);
       }
-      leaf.best_theta = lerp(0.5f * float(best / (grid_size * grid_size)), slab.theta_lo, slab.theta_hi);
-      leaf.best = points[t * grid_points + best].p;
       rules.analyse(leaf, grid);
     }
   });
@@ -73,7 +102,7 @@ float total(const Slab& slab, float Leaf::*member) {
   return float(sum);
 }
 
-void split_node(Slab& slab, std::uint32_t index) {
+void split_node(Slab& slab, std::uint32_t index, const Domain& domain) {
   const auto child = std::uint32_t(slab.nodes.size());
   Leaf leaf = slab.nodes[index].leaf;
   slab.nodes[index].split = leaf.split_x ? Split::x : Split::y;
@@ -82,10 +111,18 @@ void split_node(Slab& slab, std::uint32_t index) {
   ++(leaf.split_x ? cell.level_x : cell.level_y);
   std::uint32_t& position = leaf.split_x ? cell.ix : cell.iy;
   position *= 2;
-  slab.nodes.push_back({Split::leaf, 0, leaf});
-  ++position;
-  slab.nodes.push_back({Split::leaf, 0, leaf});
+  for (int half = 0; half < 2; ++half, ++position) {
+    Leaf inherited;
+    inherited.cell = cell;
+    if (contains(box_of(cell, domain), leaf.seen_at)) {
+      inherited.seen = leaf.seen, inherited.seen_theta = leaf.seen_theta, inherited.seen_at = leaf.seen_at;
+    }
+    slab.nodes.push_back({Split::leaf, 0, inherited});
+  }
 }
+
+// Where one point towers over the grid, the longer side closes in on it.
+bool towers(const Leaf& leaf, float over) { return leaf.seen > 2 * over; }
 
 bool may_split(Leaf& leaf) {
   if ((leaf.split_x ? leaf.cell.level_x : leaf.cell.level_y) < max_level) return true;
@@ -95,13 +132,14 @@ bool may_split(Leaf& leaf) {
 
 }  // namespace
 
-Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table) {
-  Slab slab{theta_lo, theta_hi, {}, {}, {Node{}}};
+Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Domain& domain) {
+  Slab slab{theta_lo, theta_hi, {}, {}, {}, {Node{}}};
   for (std::size_t k = 0; k < theta_nodes; ++k) {
     // Just inside the borders, where a neighbour's kink does not reach.
     const float t = k == 0 ? 1e-4f : k == 1 ? 0.5f : 1 - 1e-4f;
     slab.cos_theta_o[k] = max(cos(lerp(t, theta_lo, theta_hi)), min_cos_theta_o);
     slab.albedo[k] = albedo_at(table, slab.cos_theta_o[k]);
+    for (int i = 0; i < landmark_count; ++i) slab.landmarks[k][std::size_t(i)] = landmark(domain, slab.cos_theta_o[k], i);
   }
   return slab;
 }
@@ -176,7 +214,7 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
         const float e = excess(i);
         if (surplus <= 0 || (any && e < min(fair, 0.5f * worst)) || state.leaves >= rules.max_leaves) break;
         if (!may_split(slab.nodes[i].leaf)) continue;
-        split_node(slab, i);
+        split_node(slab, i, field.domain);
         const std::uint32_t child = slab.nodes[i].child;
         tasks.push_back({s, child});
         tasks.push_back({s, child + 1});
@@ -202,7 +240,7 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
           for (const auto& [lo, hi] :
                {std::pair{slabs[s].theta_lo, mid}, std::pair{mid, slabs[s].theta_hi}}) {
             fresh.push_back({std::uint32_t(next.size()), 0});
-            next.push_back(make_slab(lo, hi, albedo));
+            next.push_back(make_slab(lo, hi, albedo, field.domain));
             next_states.push_back({});
           }
         } else {
@@ -240,12 +278,13 @@ void analyse_exact(Leaf& leaf, const Grid& grid) {
     maximum = max(maximum, by_theta[k]);
     mean_maximum += theta_weights[k] * by_theta[k];
   }
-  leaf.share = maximum;
   leaf.ideal = area * mean;
-  leaf.cost = area * maximum;
   leaf.theta_cost = area * (maximum - mean_maximum);
+  leaf.share = max(maximum, leaf.seen);
+  leaf.cost = area * leaf.share;
   const float gain_x = abs(half_x[0] - half_x[1]), gain_y = abs(half_y[0] - half_y[1]);
   leaf.split_x = gain_x > gain_y || (gain_x == gain_y && leaf.cell.level_x <= leaf.cell.level_y);
+  if (towers(leaf, maximum)) leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
 }
 
 void analyse_one_shot(Leaf& leaf, const Grid& grid) {
@@ -300,6 +339,13 @@ void analyse_one_shot(Leaf& leaf, const Grid& grid) {
   leaf.cost = max(area * leaf.share, leaf.ideal);
   leaf.theta_cost = area * (sqrt(square) - sqrt(steady));
   leaf.split_x = miss_x > miss_y || (miss_x == miss_y && leaf.cell.level_x <= leaf.cell.level_y);
+  // A needle between the points of the grid: pretend that it fills 1/16 of the leaf, until the grid sees it.
+  float maximum = 0;
+  for (const FieldValue& v : grid) maximum = max(maximum, v.upper);
+  if (towers(leaf, maximum)) {
+    leaf.cost = area * sqrt(square + sqr(leaf.seen) / 16);
+    leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
+  }
 }
 
 }  // namespace reflectree::detail

@@ -30,6 +30,9 @@ inline Box box_of(const DyadicCell& cell, const Domain& domain) {
   const float wx = 2.f / float(1U << cell.level_x), wy = y_size / float(1U << cell.level_y);
   return {-1 + float(cell.ix) * wx, y_min + float(cell.iy) * wy, wx, wy};
 }
+inline bool contains(const Box& box, Vec2<float> p) {
+  return p.x >= box.x0 && p.x <= box.x0 + box.width && p.y >= box.y0 && p.y <= box.y0 + box.height;
+}
 inline float area_share(const DyadicCell& cell) {
   return 1.f / float(1U << cell.level_x) / float(1U << cell.level_y);
 }
@@ -49,8 +52,10 @@ struct Leaf {
   float share = 0;                            // per unit area: maximum, or root mean square
   bool split_x = false;
   float slope_x = 0, slope_y = 0;  // one-shot
-  float best_theta = 0;            // exact: where the maximum was seen
-  Vec2<float> best{};
+  // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
+  // has found once is not lost between the points of a finer grid.
+  float seen = 0, seen_theta = 0;
+  Vec2<float> seen_at{};
 };
 
 struct Node {
@@ -62,6 +67,7 @@ struct Node {
 struct Slab {
   float theta_lo, theta_hi;
   std::array<float, theta_nodes> cos_theta_o, albedo;
+  std::array<std::array<Vec2<float>, landmark_count>, theta_nodes> landmarks;
   std::vector<Node> nodes;  // nodes[0] is the root
 };
 
@@ -74,7 +80,7 @@ struct GrowthRules {
 };
 
 // Fills cosines and albedo of a slab with an unsplit root.
-Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& albedo);
+Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& albedo, const Domain& domain);
 // Leaves of a slab in preorder (indices into nodes).
 std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
 // Grows until every slab meets the goal; slabs stay ordered by theta_o.

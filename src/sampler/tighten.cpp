@@ -92,7 +92,13 @@ Climber start_at(Slab& slab, Leaf& leaf, float theta, Vec2<float> p, float value
   return c;
 }
 
-void raise(Leaf& leaf, float share) {
+void raise(const Climber& c, float share) {
+  Leaf& leaf = *c.leaf;
+  if (c.value > leaf.seen) {
+    leaf.seen = c.value;
+    leaf.seen_theta = lerp(c.at[0], c.slab->theta_lo, c.slab->theta_hi);
+    leaf.seen_at = {c.box.x0 + c.box.width * c.at[1], c.box.y0 + c.box.height * c.at[2]};
+  }
   leaf.share = max(leaf.share, max(share, floor_share));
   leaf.cost = area_share(leaf.cell) * leaf.share;
 }
@@ -106,12 +112,12 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
     for (std::size_t i = first_new[s]; i < slabs[s].nodes.size(); ++i) {
       Node& node = slabs[s].nodes[i];
       if (node.split != Split::leaf) continue;
-      climbers.push_back(start_at(slabs[s], node.leaf, node.leaf.best_theta, node.leaf.best, node.leaf.share,
+      climbers.push_back(start_at(slabs[s], node.leaf, node.leaf.seen_theta, node.leaf.seen_at, node.leaf.seen,
                                   0.2f, field.domain));
     }
   }
   climb(climbers, 7, field, albedo, host, evaluations);
-  for (const Climber& c : climbers) raise(*c.leaf, c.value * (1 + margin));
+  for (const Climber& c : climbers) raise(c, c.value * (1 + margin));
 }
 
 float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
@@ -159,7 +165,7 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
       const double fair = double(leaf.cost) / total * double(leaves.size());
       const auto count = std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
       Pcg32 u(seed + s, i);
-      const Climber c = start_at(slab, slab.nodes[i].leaf, slab.theta_lo, leaf.best, 0, 0, field.domain);
+      const Climber c = start_at(slab, slab.nodes[i].leaf, slab.theta_lo, leaf.seen_at, 0, 0, field.domain);
       targets.push_back({s, i, points.size(), count});
       for (std::size_t k = 0; k < count; ++k) {
         const float at[3] = {to_unit_float(u()), to_unit_float(u()), to_unit_float(u())};
@@ -171,7 +177,7 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
   flush();
   climb(climbers, 6, field, albedo, host, evaluations);
   for (const Climber& c : climbers)
-    raise(*c.leaf, c.value + 0.5f * (c.value - c.leaf->share) + margin * c.value);
+    raise(c, c.value + 0.5f * (c.value - c.leaf->share) + margin * c.value);
   return float(*std::max_element(overshoot.begin(), overshoot.end()));
 }
 
