@@ -9,18 +9,18 @@
 namespace reflectree {
 namespace {
 
-// A position between the centres of two cells.
+// A position between the centres of two cells; max(0, x) turns a NaN into 0.
 struct Between {
   int low, high;
   float fraction;
 };
 Between clamped_between(float x, int size) {
-  const float y = clamp(x - 0.5f, 0.f, float(size - 1));
+  const float y = min(max(0.f, x - 0.5f), float(size - 1));
   const int low = std::min(int(y), size - 1);
   return {low, std::min(low + 1, size - 1), y - float(low)};
 }
 Between wrapped_between(float x, int size) {
-  const float y = x < 0.5f ? x - 0.5f + float(size) : x - 0.5f;
+  const float y = min(max(0.f, x < 0.5f ? x - 0.5f + float(size) : x - 0.5f), float(size));
   const int low = std::min(int(y), size - 1);
   return {low, low + 1 == size ? 0 : low + 1, y - float(low)};
 }
@@ -42,7 +42,9 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
            ((std::size_t(h) * std::size_t(n_d) + std::size_t(d)) * std::size_t(n_p) + std::size_t(p)) * 3;
   };
   if (lookup == TableLookup::nearest) {
-    const auto index = [](float v, int size) { return std::min(int(v), size - 1); };
+    const auto index = [](float v, int size) {
+      return std::min(int(min(max(0.f, v), float(size))), size - 1);
+    };
     const float* v = cell(index(x, n_h), index(y, n_d), index(z, n_p));
     return {v[0], v[1], v[2]};
   }

@@ -15,7 +15,7 @@ struct GridPosition {
   float fraction;
 };
 GridPosition locate(float u, int size) {
-  const float x = clamp(u, 0.f, 1.f) * float(size - 1);
+  const float x = min(max(0.f, u), 1.f) * float(size - 1);  // in this order a NaN becomes 0
   const int node = std::min(int(x), size - 2);
   return {node, x - float(node)};
 }
@@ -108,7 +108,7 @@ Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
     inner_nodes_passed += theta_o >= theta_o_[i] ? 1U : 0U;
   const std::size_t pair = inner_nodes_passed;
   const float below = theta_o_[pair], above = theta_o_[pair + 1];
-  const float t1 = clamp((theta_o - below) / (above - below), 0.f, 1.f), t0 = 1 - t1;
+  const float t1 = min(max(0.f, (theta_o - below) / (above - below)), 1.f), t0 = 1 - t1;
 
   // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
   const bool normal = g.wo.x == 0 && g.wo.y == 0;
@@ -143,7 +143,7 @@ Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
                           std::size_t(qx.node);
   const float a1 = qx.fraction, a0 = 1 - a1, b1 = qy.fraction, b0 = 1 - b1;
   const float scale =
-      interpolate(ndf_, u) / (4.f * interpolate(sigma_, elevation_to_u(theta_o)) * max(g.cos_theta_i, 1e-6f));
+      interpolate(ndf_, u) / (4.f * interpolate(sigma_, elevation_to_u(theta_o)) * max(1e-6f, g.cos_theta_i));
   float out[4] = {0, 0, 0, 0};
   const auto add = [&out](const ColourNode& n, float w0, float w1) {
     for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];

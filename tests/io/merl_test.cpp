@@ -104,6 +104,19 @@ TEST(HalfAngleTable, CentresLieAboveTheHorizonAndInTheirCells) {
   EXPECT_GT(pulled, 1000);
 }
 
+TEST(HalfAngleTable, DirectionsThatAreNotFiniteDoNoHarm) {
+  HalfAngleTable table = index_table(12, 10, 16, false);
+  for (const float bad : {std::nanf(""), HUGE_VALF, -HUGE_VALF, 1e30f}) {
+    for (const Direction wo : {Direction{bad, 0, 0.5f}, Direction{0, bad, 1}, Direction{bad, bad, bad}}) {
+      for (const TableLookup lookup : {TableLookup::nearest, TableLookup::linear}) {
+        table.lookup = lookup;
+        EXPECT_TRUE(finite_and_not_negative(eval(table, wo, {0, 0.6f, 0.8f})));
+        EXPECT_TRUE(finite_and_not_negative(eval(table, {0, 0.6f, 0.8f}, wo)));
+      }
+    }
+  }
+}
+
 TEST(Merl, BakedFileGivesTheFunctionBackAtTheCentres) {
   const Ggx ggx{0.2f, {0.9f, 0.5f, 0.2f}};
   const Bytes bytes = write_merl(tabulate_merl(ggx));

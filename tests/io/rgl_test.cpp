@@ -135,6 +135,16 @@ TEST(Rgl, FiniteContinuousAndIsotropicUpToGrazing) {
   }
 }
 
+TEST(Rgl, DirectionsThatAreNotFiniteDoNoHarm) {
+  const RglTable table = read_rgl(synthetic::rgl_file(), "test");
+  for (const float bad : {std::nanf(""), HUGE_VALF, -HUGE_VALF, 1e30f}) {
+    for (const Direction wo : {Direction{bad, 0, 0.5f}, Direction{0, bad, 1}, Direction{bad, bad, bad}}) {
+      EXPECT_TRUE(finite_and_not_negative(eval(table, wo, {0, 0.6f, 0.8f})));
+      EXPECT_TRUE(finite_and_not_negative(eval(table, {0, 0.6f, 0.8f}, wo)));
+    }
+  }
+}
+
 // Values of another renderer: f cos_i, not clipped, 200 pairs a file.
 struct Reference {
   std::vector<Direction> wo, wi;
