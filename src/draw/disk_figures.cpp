@@ -2,11 +2,9 @@
 // The pictures over the disk.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "disk_frame.hpp"
 #include "reflectree/draw/material_figures.hpp"
-#include "reflectree/sampler/domain_map.hpp"
 
 namespace reflectree::draw {
 
@@ -28,127 +26,7 @@ std::string angle_words(Direction wo) {
   return number(double(theta_of(wo)) * 180 / pi_v<double>, 3) + " degrees";
 }
 
-// A border of the square as a curve over the disk: halved until a chord stays within a tenth of a unit,
-// cut where the domain leaves the upper hemisphere, split by the brightness behind it.
-class BorderPen {
- public:
-  BorderPen(const Domain& domain, Direction wo, const DiskPlace& place, const DiskImage& background,
-            const Axis& range)
-      : domain_(domain), wo_(wo), place_(place), background_(background), range_(range) {
-    range_.from = 0;
-    range_.to = 1;
-  }
-
-  // Not drawn: borders between halves (centres p and q) that are less than a unit apart.
-  bool worth_drawing(Vec2<float> p, Vec2<float> q) const {
-    const Point a = lifted(p), b = lifted(q);
-    return std::hypot(b.x - a.x, b.y - a.y) * place_.radius >= 1;
-  }
-
-  void draw(Vec2<float> a, Vec2<float> b) {
-    constexpr int pieces = 4;  // at least: the square's diagonals are kinks of its map to the disk
-    Point from = lifted(a);
-    for (int k = 1; k <= pieces; ++k) {
-      const float t = float(k) / pieces;
-      const Vec2<float> p{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
-      const Point to = lifted(p);
-      refine(from, to, 0);
-      from = to;
-    }
-  }
-  // A half domain's other side is drawn as a mirror image.
-  std::string text() const { return both_sides(dark_, "cells-dark") + both_sides(light_, "cells-light"); }
-
- private:
-  struct Point {
-    Vec2<float> square;
-    double x = 0, y = 0;
-    bool above = false;
-  };
-
-  std::string both_sides(const PathData& data, std::string_view css_class) const {
-    if (data.empty()) return "";
-    std::string borders;
-    if (domain_.half) {
-      // Named by its content (FNV-1a), so that figures may share a page.
-      std::uint64_t hash = 0xcbf29ce484222325ULL;
-      for (const char c : data.text()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-      const std::string id = "c" + std::to_string(hash);
-      const std::string mirror = "matrix(1 0 0 -1 0 " + number(2 * place_.y) + ")";
-      borders = element("path", {{"id", id}, {"d", data.text()}}) +
-                element("use", {{"href", "#" + id}, {"transform", mirror}});
-    } else {
-      borders = element("path", {{"d", data.text()}});
-    }
-    return element("g", {{"class", css_class}}, borders) + "\n";
-  }
-
-  Point lifted(Vec2<float> p) const {
-    const Direction wi = lift(domain_, wo_, p).geometry.wi;
-    return {p, wi.x, wi.y, wi.z > -1e-4f};  // the horizon itself is drawn
-  }
-
-  void refine(const Point& a, const Point& b, int depth) {
-    const Point m = lifted({0.5f * (a.square.x + b.square.x), 0.5f * (a.square.y + b.square.y)});
-    const double bend = std::hypot(m.x - 0.5 * (a.x + b.x), m.y - 0.5 * (a.y + b.y)) * place_.radius;
-    const double length = std::hypot(b.x - a.x, b.y - a.y) * place_.radius;
-    const bool cut = a.above != b.above || a.above != m.above;
-    if (depth < 8 && (bend > 0.1 || length > 12 || cut)) {
-      refine(a, m, depth + 1);
-      refine(m, b, depth + 1);
-      return;
-    }
-    if (!a.above || !b.above) return;
-    const float v = background_.at(m.x, m.y);
-    const double brightness = range_.at(std::isnan(v) ? 0.0 : double(v));
-    // With some inertia, so that a border across an even middle tone is not broken into dashes.
-    const bool joined = last_x_ == a.x && last_y_ == a.y;
-    const bool bright = brightness > (!joined || latest_ == nullptr ? 0.62 : latest_ == &dark_ ? 0.52 : 0.72);
-    PathData& data = bright ? dark_ : light_;
-    if (latest_ != &data || !joined) data.move_to(place_.px(a.x), place_.py(a.y));
-    data.line_to(place_.px(b.x), place_.py(b.y));
-    latest_ = &data;
-    last_x_ = b.x;
-    last_y_ = b.y;
-  }
-
-  Domain domain_;
-  Direction wo_;
-  DiskPlace place_;
-  const DiskImage& background_;
-  Axis range_;
-  PathData dark_, light_;
-  PathData* latest_ = nullptr;
-  double last_x_ = 0, last_y_ = 0;
-};
-
 }  // namespace
-
-std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo, double x,
-                         double y, double radius, const DiskImage& background, const Axis& range) {
-  BorderPen pen(domain, wo, {x, y, radius}, background, range);
-  // Each inner node draws the line that halves its box: every border once.
-  std::vector<Cell> boxes{{-1, 1, domain.half ? 0.f : -1.f, 1}};
-  if (domain.half) pen.draw({-1, 0}, {1, 0});
-  for (const Split split : nodes) {
-    const Cell c = boxes.back();
-    boxes.pop_back();
-    if (split == Split::leaf) continue;
-    Cell lower_half = c, upper_half = c;
-    const bool along_x = split == Split::x;
-    const Vec2<float> centre{0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)};
-    (along_x ? lower_half.x1 : lower_half.y1) = along_x ? centre.x : centre.y;
-    (along_x ? upper_half.x0 : upper_half.y0) = along_x ? centre.x : centre.y;
-    const Vec2<float> step =
-        along_x ? Vec2<float>{0.25f * (c.x1 - c.x0), 0} : Vec2<float>{0, 0.25f * (c.y1 - c.y0)};
-    if (pen.worth_drawing({centre.x - step.x, centre.y - step.y}, {centre.x + step.x, centre.y + step.y})) {
-      along_x ? pen.draw({centre.x, c.y0}, {centre.x, c.y1}) : pen.draw({c.x0, centre.y}, {c.x1, centre.y});
-    }
-    boxes.push_back(upper_half);
-    boxes.push_back(lower_half);
-  }
-  return pen.text();
-}
 
 Figure target_figure(const DiskImage& target, Direction wo) {
   const DiskPlace place;
@@ -224,11 +102,14 @@ Figure square_figure(const SamplerData& data, Direction wo) {
     hi = std::max(hi, majorant[i]);
     lo = std::min(lo, majorant[i] > 0 ? majorant[i] : lo);
   }
-  const double width = 292, height = data.domain.half ? width / 2 : width, left = 34, top = 44;
-  Figure figure{disk_figure_width, top + height + 76, "The tree on its square", {}, {}};
+  const double total_width = 560, top = 48;
+  const double width = data.domain.half ? 400 : 300, height = data.domain.half ? width / 2 : width;
+  const double left = (total_width - width) / 2;
+  Figure figure{total_width, top + height + 64, "The tree on its square", {}, {}};
   figure.description = "The square of the domain " + std::string(name_of(data.domain.kind)) +
                        " cut into leaves, coloured by their bounds.";
-  figure.body = disk_heading(figure.title, wo);
+  figure.body = label(16, 24, figure.title, Anchor::start, "head") +
+                label(total_width - 16, 24, theta_o_text(wo), Anchor::end, "aside");
   Axis range{std::max(lo, hi * 1e-5), std::max(hi, lo * 10), left, left + width, true};
   Axis unit = range;
   unit.from = 0;

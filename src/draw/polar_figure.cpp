@@ -13,63 +13,7 @@ namespace {
 
 constexpr double deg = pi_v<double> / 180;
 
-// In-plane angle (from the normal, positive towards +x) and latitude about the x-z plane.
-Direction in_plane(double angle, double latitude) {
-  const double c = std::cos(latitude);
-  return {float(c * std::sin(angle)), float(std::sin(latitude)), float(c * std::cos(angle))};
-}
-
 }  // namespace
-
-double PlaneHistogram::density_per_count() const {
-  // Solid angle of a bin: the integral of cos(latitude) over the band times the angle.
-  const double solid_angle = 2 * std::sin(half_width_deg * deg) * bin_deg * deg;
-  return samples > 0 ? 1 / (samples * solid_angle) : 0;
-}
-double PlaneHistogram::density(int bin) const { return count[std::size_t(bin)] * density_per_count(); }
-
-PlaneHistogram plane_histogram(std::span<const Direction> samples) {
-  PlaneHistogram h;
-  h.samples = double(samples.size());
-  const double limit = std::sin(PlaneHistogram::half_width_deg * deg);
-  for (const Direction& wi : samples) {
-    if (std::abs(double(wi.y)) > limit || wi.z < 0) continue;
-    const double angle = std::atan2(double(wi.x), double(wi.z)) / deg;
-    const int bin = std::clamp(int((angle + 90) / PlaneHistogram::bin_deg), 0, PlaneHistogram::bins - 1);
-    h.count[std::size_t(bin)] += 1;
-  }
-  return h;
-}
-
-PlaneLobe plane_lobe(const AnyBrdf& f, const Target& target, Direction wo, double albedo) {
-  constexpr int across = 24, fine = 2, steps = 5 * PlaneHistogram::bins;  // points: 0.25 degrees apart
-  const int channels = f.channels();
-  std::vector<Direction> same, wi;
-  std::vector<double> weight;
-  for (int i = 0; i < steps * fine; ++i) {
-    for (int k = 0; k < across; ++k) {
-      const double latitude = PlaneHistogram::half_width_deg * deg * ((k + 0.5) * 2 / across - 1);
-      wi.push_back(in_plane(((i + 0.5) / (steps * fine) - 0.5) * pi_v<double>, latitude));
-      weight.push_back(std::cos(latitude));
-    }
-  }
-  same.assign(wi.size(), wo);
-  std::vector<float> values(wi.size() * std::size_t(channels));
-  f.eval(same, wi, values);
-  PlaneLobe lobe;
-  for (int i = 0; i < steps; ++i) {
-    double sum = 0, weights = 0;
-    for (int k = 0; k < fine * across; ++k) {
-      const auto j = std::size_t(i * fine * across + k);
-      sum +=
-          weight[j] * double(target(values.data() + j * std::size_t(channels), channels)) * double(wi[j].z);
-      weights += weight[j];
-    }
-    lobe.angle.push_back(((i + 0.5) / steps - 0.5) * 180);
-    lobe.density.push_back(albedo > 0 ? sum / weights / albedo : 0);
-  }
-  return lobe;
-}
 
 Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
                     std::span<const Direction> samples) {
@@ -77,7 +21,8 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   const PlaneHistogram histogram = plane_histogram(samples);
   double highest = 0;
   for (const double d : lobe.density) highest = std::max(highest, d);
-  for (int b = 0; b < PlaneHistogram::bins; ++b) highest = std::max(highest, histogram.density(b));
+  const std::vector<PlaneBar> plane = plane_bars(histogram, lobe);
+  for (const PlaneBar& b : plane) highest = std::max(highest, b.count * b.density_per_count);
   if (highest <= 0) highest = 1;
 
   Figure figure{disk_figure_width, disk_figure_height, "Lobe in the plane of incidence", {}, {}};
@@ -123,10 +68,10 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   figure.body += ring_labels + label(cx - radius, cy + 14, "density / sr⁻¹", Anchor::start, "tick");
   PathData bars;
   bars.move_to(cx, cy);
-  for (int b = 0; b < PlaneHistogram::bins; ++b) {
-    const double r = reach(histogram.density(b));
-    for (int k = 0; k <= 2; ++k) {
-      const double a = (-90 + (b + 0.5 * k) * PlaneHistogram::bin_deg) * deg;
+  for (const PlaneBar& b : plane) {
+    const double r = reach(b.count * b.density_per_count);
+    for (int k = 0; k <= 4; ++k) {
+      const double a = (b.from_deg + (b.to_deg - b.from_deg) * k / 4) * deg;
       bars.line_to(cx + r * std::sin(a), cy - r * std::cos(a));
     }
   }
@@ -148,15 +93,17 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   viewer.line_to(cx + tip * s, cy - tip * c);
   viewer.line_to(cx + tip * s - 8 * s + 3.5 * c, cy - tip * c + 8 * c + 3.5 * s);
   figure.body += path(viewer, "arrow");
-  figure.body +=
-      label(cx + 0.78 * tip * s + 9 * c, cy - 0.78 * tip * c + 11 * s, "*ω*_o", Anchor::start, "label");
+  // Its name stands where there is room: right of a steep arrow, above a flat one.
+  const double side = s < 0.8 ? 1 : -1;
+  figure.body += label(cx + 0.78 * tip * s + side * 9 * c, cy - 0.78 * tip * c + side * 9 * s, "*ω*_o",
+                       side > 0 ? Anchor::start : Anchor::end, "label");
 
   // The strip.
   Frame strip;
   strip.x = {-90, 90, 46, 344};
   double lowest = highest;
   for (const double d : lobe.density) lowest = d > 0 ? std::min(lowest, d) : lowest;
-  lowest = std::max({lowest, histogram.density_per_count() * 0.5, highest * 1e-6});
+  lowest = std::max({lowest, histogram.density_per_count() * 0.05, highest * 1e-6});
   lowest = std::pow(10.0, std::floor(std::log10(std::min(lowest, highest / 10))));
   strip.y = {lowest, highest * 1.6, 360, 250, true};
   strip.x_ticks = ticks_every(strip.x, 30, "°");
@@ -166,18 +113,15 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   figure.body += label(46, 244, "the same, log scale", Anchor::start, "note");
   PathData steps, whiskers;
   steps.move_to(strip.x.from, strip.y.from);
-  const double one = histogram.density_per_count();
-  for (int b = 0; b < PlaneHistogram::bins; ++b) {
-    const double n = histogram.count[std::size_t(b)];
-    const double left = strip.x.at(-90 + b * PlaneHistogram::bin_deg);
-    const double right = strip.x.at(-90 + (b + 1) * PlaneHistogram::bin_deg);
-    steps.line_to(left, strip.y.at(n * one));
-    steps.line_to(right, strip.y.at(n * one));
-    if (n == 0) continue;
+  for (const PlaneBar& b : plane) {
+    const double left = strip.x.at(b.from_deg), right = strip.x.at(b.to_deg), one = b.density_per_count;
+    steps.line_to(left, strip.y.at(b.count * one));
+    steps.line_to(right, strip.y.at(b.count * one));
+    if (b.count == 0) continue;
     // Two standard deviations of a Poisson count either way.
-    const double x = (left + right) / 2, wide = 2 * std::sqrt(n);
-    whiskers.move_to(x, strip.y.at((n + wide) * one));
-    whiskers.line_to(x, strip.y.at(std::max(n - wide, 0.0) * one));
+    const double x = (left + right) / 2, wide = 2 * std::sqrt(b.count);
+    whiskers.move_to(x, strip.y.at((b.count + wide) * one));
+    whiskers.line_to(x, strip.y.at(std::max(b.count - wide, 0.0) * one));
   }
   steps.line_to(strip.x.to, strip.y.from);
   steps.close();
@@ -186,50 +130,6 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   // The key.
   figure.body += line(206, 240.5, 222, 240.5, "curve") + label(226, 244, "target", Anchor::start, "note");
   figure.body += rectangle(268, 235, 14, 9, "bar") + label(286, 244, "samples ±2*σ*", Anchor::start, "note");
-  return figure;
-}
-
-Figure slabs_figure(const SamplerData& data) {
-  const double width = 560;
-  Figure figure{width, 300, "Slabs of *θ*_o and their leaves", {}, {}};
-  std::size_t most = 1;
-  for (const MajorantTree& t : data.exact) most = std::max(most, t.mass.size());
-  for (const DensityTree& t : data.one_shot) most = std::max(most, t.mass.size());
-  Frame f;
-  f.x = {0, 90, 54, width - 16};
-  f.y = {1, std::max(10.0, 1.5 * double(most)), 232, 52, true};
-  f.x_ticks = ticks_every(f.x, 15, "°");
-  f.y_ticks = ticks(f.y, 4);
-  f.x_title = "*θ*_o of the viewer";
-  figure.body = label(16, 24, figure.title, Anchor::start, "head");
-  figure.title = "Slabs of theta_o and their leaves";
-  figure.body += frame(f);
-  const auto steps = [&](const Partition& partition, const auto& trees, const char* fill,
-                         const char* stroke) {
-    const std::vector<SlabBox> boxes = slab_boxes(partition);
-    PathData outline;
-    for (std::size_t i = 0; i < trees.size(); ++i) {
-      const double x0 = f.x.at(double(boxes[i].lo[0]) / deg), x1 = f.x.at(double(boxes[i].hi[0]) / deg);
-      const double y = f.y.at(double(trees[i].mass.size()));
-      figure.body += rectangle(x0, y, x1 - x0, f.y.from - y, fill);
-      outline.move_to(x0, f.y.from);
-      outline.line_to(x0, y);
-      outline.line_to(x1, y);
-      outline.line_to(x1, f.y.from);
-    }
-    figure.body += path(outline, stroke);
-  };
-  steps(data.exact_partition, data.exact, "fill-1", "curve-thin");
-  steps(data.one_shot_partition, data.one_shot, "fill-2", "bar-line");
-  figure.body +=
-      rectangle(54, 276, 14, 9, "fill-1") +
-      label(73, 285, "exact: " + std::to_string(data.exact.size()) + " slabs", Anchor::start, "note") +
-      rectangle(194, 276, 14, 9, "fill-2") +
-      label(213, 285, "one-shot: " + std::to_string(data.one_shot.size()) + " slabs", Anchor::start, "note") +
-      label(54, 44, "leaves of the slab's tree", Anchor::start, "note");
-  figure.description =
-      std::to_string(data.exact.size()) + " exact and " + std::to_string(data.one_shot.size()) +
-      " one-shot slabs over the viewer's elevation; bars give the leaves of each slab's tree.";
   return figure;
 }
 

@@ -14,6 +14,12 @@ std::string shown(const std::optional<double>& value, int digits = 3) {
   return value ? pretty(*value, digits) : dash;
 }
 
+// "exact / one-shot unit", or a dash where neither was measured.
+std::string pair(const std::optional<double>& exact, const std::optional<double>& one_shot,
+                 const char* unit) {
+  return exact || one_shot ? shown(exact) + " / " + shown(one_shot) + unit : dash;
+}
+
 std::string count(std::size_t n) { return pretty(double(n), 9); }
 
 std::string verdict(const std::optional<ChiSquareVerdict>& chi) {
@@ -81,7 +87,7 @@ std::string tiles(const ReportFigures& f) {
   tile("build", f.build_seconds ? shown(f.build_seconds, 2) + " s" : dash);
   tile("mean trials", shown(f.mean_trials));
   tile("overshoot mass", shown(f.overshoot_mass, 2));
-  tile("per sample, exact / one-shot", shown(f.exact_ns) + " / " + shown(f.one_shot_ns) + " ns");
+  tile("per sample, exact / one-shot", pair(f.exact_ns, f.one_shot_ns, " ns"));
   tile("relative variance, one-shot", shown(f.relative_variance, 2));
   return "<dl>" + out + "</dl>\n";
 }
@@ -93,8 +99,8 @@ std::string pictures(const std::vector<Figure>& figures, const char* css_class) 
 }
 
 std::string section(const ReportMaterial& m, std::size_t index) {
-  std::string out =
-      "<div class=\"head\"><h2>" + escape(m.name) + "</h2><span>" + verdict(m.figures.chi_square);
+  std::string out = "<div class=\"head\"><h2>" + escape(m.name) + "</h2><span>" +
+                    (m.figures.chi_square ? verdict(m.figures.chi_square) : "");
   const std::string note = verdict_note(m.figures.chi_square);
   out += (note.empty() ? "" : " " + element("span", {{"class", "origin"}}, "<i>χ</i>²: " + escape(note))) +
          "</span></div>\n";

@@ -55,7 +55,7 @@ figure svg{display:block;width:100%;height:auto}
 .pictures figure{max-width:440px}
 .pictures.wide{grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr))}
 .pictures.wide figure{max-width:620px}
-.how{columns:2 340px;column-gap:44px;font-size:15px}
+.how{margin-top:12px;columns:2 340px;column-gap:44px;font-size:15px}
 .how p{break-inside:avoid}
 footer{color:var(--soft);font-size:14px;padding:10px 0 60px}
 @media print{body{background:#fff}.card{break-inside:avoid-page;border:0;padding:0}}

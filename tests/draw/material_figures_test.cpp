@@ -42,19 +42,19 @@ std::vector<Direction> cosine_directions(std::size_t n) {
 
 TEST(PlaneHistogram, CountsByTheAngleInThePlane) {
   std::vector<Direction> samples;
-  for (int i = 0; i < 3; ++i) samples.push_back(viewer_at(31 * degree));   // bin 48: 30 to 32.5
-  for (int i = 0; i < 2; ++i) samples.push_back(viewer_at(-89 * degree));  // bin 0
-  samples.push_back(direction_from_angles(40 * degree, 90 * degree));      // far from the plane
-  samples.push_back({std::sin(31 * degree), 0, -std::cos(31 * degree)});   // below the surface
+  for (int i = 0; i < 3; ++i) samples.push_back(viewer_at(31.2f * degree));   // bin 242: 31 to 31.5
+  for (int i = 0; i < 2; ++i) samples.push_back(viewer_at(-89.7f * degree));  // bin 0
+  samples.push_back(direction_from_angles(40 * degree, 90 * degree));         // far from the plane
+  samples.push_back({std::sin(31 * degree), 0, -std::cos(31 * degree)});      // below the surface
   const PlaneHistogram h = plane_histogram(samples);
-  EXPECT_EQ(h.count[48], 3);
+  EXPECT_EQ(h.count[242], 3);
   EXPECT_EQ(h.count[0], 2);
   double sum = 0;
   for (const double n : h.count) sum += n;
   EXPECT_EQ(sum, 5);
-  // 3 of 7 over 2 sin 5° times 2.5°.
-  EXPECT_NEAR(h.density(48), 3.0 / 7 / (2 * std::sin(5 * pi_v<double> / 180) * 2.5 * pi_v<double> / 180),
-              1e-9);
+  // One of 7 over 2 sin 5° times 0.5°.
+  const double solid_angle = 2 * std::sin(5 * pi_v<double> / 180) * 0.5 * pi_v<double> / 180;
+  EXPECT_NEAR(h.density_per_count(), 1 / (7 * solid_angle), 1e-9);
 }
 
 TEST(PlaneLobe, LambertIsTheCosine) {
@@ -66,29 +66,46 @@ TEST(PlaneLobe, LambertIsTheCosine) {
   }
 }
 
+TEST(PlaneBars, AreNarrowWhereMuchIsExpectedAndKeepEveryCount) {
+  PlaneHistogram h;
+  PlaneLobe lobe;
+  h.samples = 1000;
+  for (int i = 0; i < PlaneHistogram::bins; ++i) {
+    h.count[std::size_t(i)] = i % 7;
+    lobe.angle.push_back((i + 0.5) / 2 - 90);
+    lobe.density.push_back((i < 100 ? 50 : i < 200 ? 10.01 : 0) * h.density_per_count());  // directions
+  }
+  const std::vector<PlaneBar> bars = plane_bars(h, lobe, 40);
+  // 100 bins alone, 100 in fours, 160 in twenties (10 degrees).
+  ASSERT_EQ(bars.size(), 100U + 25 + 8);
+  EXPECT_EQ(bars[100].to_deg - bars[100].from_deg, 2);
+  EXPECT_EQ(bars.back().to_deg - bars.back().from_deg, 10);
+  EXPECT_EQ(bars.front().from_deg, -90);
+  EXPECT_EQ(bars.back().to_deg, 90);
+  double counted = 0, known = 0;
+  for (const PlaneBar& b : bars) counted += b.count;
+  for (const double n : h.count) known += n;
+  EXPECT_EQ(counted, known);
+  EXPECT_NEAR(bars[100].density_per_count, h.density_per_count() / 4, 1e-12);
+}
+
 // The largest deviation of the bars from the curve in standard deviations.
 double worst_deviation(const PlaneHistogram& h, const PlaneLobe& lobe) {
   double worst = 0;
-  const std::size_t steps = lobe.density.size() / std::size_t(PlaneHistogram::bins);
-  for (int b = 0; b < PlaneHistogram::bins; ++b) {
-    double expected = 0;
-    for (std::size_t k = 0; k < steps; ++k)
-      expected += lobe.density[std::size_t(b) * steps + k] / double(steps);
-    expected /= h.density_per_count();
-    if (expected > 20)
-      worst = std::max(worst, std::abs(h.count[std::size_t(b)] - expected) / std::sqrt(expected));
+  for (const PlaneBar& b : plane_bars(h, lobe)) {
+    if (b.expected >= 40) worst = std::max(worst, std::abs(b.count - b.expected) / std::sqrt(b.expected));
   }
   return worst;
 }
 
 TEST(PlaneHistogram, CosineSamplesFollowTheLambertLobe) {
-  const PlaneHistogram h = plane_histogram(cosine_directions(300000));
+  const PlaneHistogram h = plane_histogram(cosine_directions(400000));
   EXPECT_LT(worst_deviation(h, plane_lobe(Lambert{{1, 1, 1}}, {}, viewer_at(0.3f), std::sqrt(3.0))), 4.8);
 }
 
 TEST(PlaneHistogram, CosineSamplesDoNotFollowAnotherLobe) {
   const auto bent = [](Direction, Direction wi) { return (wi.x > 0 ? 1.2f : 0.8f) / pi; };
-  const PlaneHistogram h = plane_histogram(cosine_directions(300000));
+  const PlaneHistogram h = plane_histogram(cosine_directions(400000));
   EXPECT_GT(worst_deviation(h, plane_lobe(AnyBrdf(bent), {}, viewer_at(0.3f), 1.0)), 4.8);
 }
 

@@ -16,6 +16,8 @@ struct Example {
 };
 Example make_example();
 
+// Target, tree and samples in a row: the method in one picture.
+draw::Figure overview_figure(const Example& example);
 draw::Figure problem_figure(const Example& example);
 draw::Figure domains_figure();
 draw::Figure albedo_figure();

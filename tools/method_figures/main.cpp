@@ -30,6 +30,7 @@ int main(int count, char** arguments) {
   try {
     const method::Example example = method::make_example();
     const std::pair<const char*, draw::Figure> figures[] = {
+        {"overview", method::overview_figure(example)},
         {"problem", method::problem_figure(example)},
         {"domains", method::domains_figure()},
         {"slabs", draw::slabs_figure(example.data)},

@@ -23,23 +23,31 @@ Figure samples_figure(const DiskImage& target, Direction wo, std::span<const Dir
 
 // Sampled directions near the plane of incidence (the x-z plane), counted by their angle in it.
 struct PlaneHistogram {
-  static constexpr int bins = 72;  // over -90..90 degrees
+  static constexpr int bins = 360;  // over -90..90 degrees
   static constexpr double bin_deg = 180.0 / bins;
   static constexpr double half_width_deg = 5;  // |latitude about the plane|
   std::vector<double> count = std::vector<double>(bins, 0.0);
   double samples = 0;  // all of them, inside the band or not
-  // Density per solid angle of a bin, sr^-1.
-  double density(int bin) const;
+  // Density per solid angle, sr^-1, of one direction in one bin.
   double density_per_count() const;
 };
 PlaneHistogram plane_histogram(std::span<const Direction> samples);
 
-// t cos_i / albedo, averaged over the latitudes of the band; `angle` in degrees, positive on the
-// viewer's side.
+// t cos_i / albedo, averaged over a bin of the band; `angle` in degrees, positive on the viewer's side.
 struct PlaneLobe {
-  std::vector<double> angle, density;
+  std::vector<double> angle, density;  // of each bin: its middle and its mean
 };
 PlaneLobe plane_lobe(const AnyBrdf& f, const Target& target, Direction wo, double albedo);
+
+// Neighbouring bins together until the lobe expects enough directions in them: narrow at a peak, wide (to
+// 10 degrees) in the tails. The counts have no part in the choice, which would bend them.
+struct PlaneBar {
+  double from_deg, to_deg;
+  double count, expected;  // directions
+  double density_per_count;
+};
+std::vector<PlaneBar> plane_bars(const PlaneHistogram& histogram, const PlaneLobe& lobe,
+                                 double least_expected = 40);
 
 // `albedo` = albedo_at(data.albedo, wo.z).
 Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
