@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reflectree/sampler/host.hpp"
-#include "reflectree/verify/erased.hpp"
+#include "reflectree/verify/bins.hpp"
 #include "reflectree/verify/result.hpp"
 
 namespace reflectree {
@@ -24,7 +24,7 @@ struct ConsistencyOptions {
 // value agrees where it lies within the tolerance of the range that the other takes over such neighbours.
 //   pdf_agrees       sample().pdf == pdf(wo, wi)
 //   weight_agrees    weight * pdf == t cos_i
-//   support          pdf > 0 wherever t cos_i > 0
+//   support          pdf > 0 wherever t cos_i > 0 (and cos_i > 5e-4, which float disks can hold)
 //   alive            no "no sample", no weight 0, no direction below the horizon
 //   finite           every direction, pdf and weight finite
 //   pdf_integral     integral of pdf + share of "no sample" = 1
