@@ -20,7 +20,8 @@ using namespace detail;
 
 constexpr float theta_max = 1.5707887f;  // cos = min_cos_theta_o, rounded outwards
 
-std::vector<Slab> first_slabs(const std::vector<float>& knots, const AlbedoTable& albedo, const Domain& domain) {
+std::vector<Slab> first_slabs(const std::vector<float>& knots, const AlbedoTable& albedo,
+                              const Domain& domain) {
   std::vector<float> borders{0, theta_max};
   for (const float theta : knots) {
     if (theta > 1e-4f && theta < theta_max - 1e-4f) borders.push_back(theta);
@@ -74,12 +75,22 @@ double quantise(const std::vector<double>& cost, std::vector<std::uint32_t>& mas
   return unit;
 }
 
-MajorantTree majorant_tree(const Slab& slab) {
-  MajorantTree tree;
+// Nodes, slopes and quantised masses; returns the unit of mass. No leaf loses support, whatever its grid saw.
+double fill(Tree& tree, const Slab& slab) {
   tree.nodes = preorder(slab);
   std::vector<double> cost;
-  for (const std::uint32_t i : leaves_in_order(slab)) cost.push_back(double(slab.nodes[i].leaf.cost));
-  const double unit = quantise(cost, tree.mass);
+  for (const std::uint32_t i : leaves_in_order(slab)) {
+    const Leaf& leaf = slab.nodes[i].leaf;
+    cost.push_back(double(area_share(leaf.cell)) * double(max(leaf.share, floor_share)));
+    tree.slope_x.push_back(std::int8_t(std::lround(leaf.slope_x * 128)));
+    tree.slope_y.push_back(std::int8_t(std::lround(leaf.slope_y * 128)));
+  }
+  return quantise(cost, tree.mass);
+}
+
+MajorantTree majorant_tree(const Slab& slab) {
+  MajorantTree tree;
+  const double unit = fill(tree, slab);
   double sum = 0;
   for (const std::uint32_t m : tree.mass) sum += m;
   tree.volume = std::nextafter(float(unit * sum), 1e30f);
@@ -88,16 +99,7 @@ MajorantTree majorant_tree(const Slab& slab) {
 
 DensityTree density_tree(const Slab& slab) {
   DensityTree tree;
-  tree.nodes = preorder(slab);
-  std::vector<double> cost;
-  for (const std::uint32_t i : leaves_in_order(slab)) {
-    const Leaf& leaf = slab.nodes[i].leaf;
-    // No leaf loses support, whatever its grid saw.
-    cost.push_back(double(area_share(leaf.cell)) * double(max(leaf.share, 1e-3f)));
-    tree.slope_x.push_back(std::int8_t(std::lround(leaf.slope_x * 128)));
-    tree.slope_y.push_back(std::int8_t(std::lround(leaf.slope_y * 128)));
-  }
-  quantise(cost, tree.mass);
+  fill(tree, slab);
   return tree;
 }
 
@@ -110,22 +112,23 @@ double volume(const Slab& slab) {
 // Grows, attacks the bounds, and grows again while the raised bounds cost more trials than allowed.
 std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const AlbedoTable& albedo,
                               const BuildOptions& options, const Host& host, BuildReport& report) {
-  constexpr float accepted_overshoot = 2e-7f;
-  constexpr int max_passes = 6;
+  constexpr float accepted_overshoot = 1e-7f;
+  constexpr int max_passes = 8;
   const float spare = 0.96f;  // of the budget: the attack will use the rest
-  GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, analyse_exact};
+  GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   grow(slabs, field, albedo, rules, host, &report.evaluations);
   rules.split_slabs = false;
   std::vector<std::size_t> first_new(slabs.size(), 0);
   for (int pass = 0; pass < max_passes; ++pass) {
     maximise(slabs, first_new, field, albedo, host, &report.evaluations);
-    report.overshoot_mass = probe(slabs, 100, options.seed + 1000003ULL * std::uint64_t(pass), field, albedo,
+    report.overshoot_mass = probe(slabs, 500, options.seed + 1000003ULL * std::uint64_t(pass), field, albedo,
                                   host, &report.evaluations);
     bool dear = false;
     for (std::size_t s = 0; s < slabs.size(); ++s) {
       first_new[s] = slabs[s].nodes.size();
       dear = dear || volume(slabs[s]) > double(options.expected_trials);
     }
+    rules.goal -= 0.04f * (options.expected_trials - 1);
     if (dear) grow(slabs, field, albedo, rules, host, &report.evaluations);
     if (!dear && report.overshoot_mass <= accepted_overshoot) break;
   }
@@ -169,7 +172,8 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& options, const Host& hos
   host.progress(0.9f);
 
   std::vector<Slab> one_shot = slabs;
-  const GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, analyse_one_shot};
+  const GrowthRules rules{
+      sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
   grow(one_shot, field, data.albedo, rules, host, &data.report.evaluations);
   data.one_shot_partition = partition_of(one_shot);
   for (const Slab& slab : one_shot) data.one_shot.push_back(density_tree(slab));

@@ -34,15 +34,15 @@ void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicC
   }
 }
 
-// A landmark inside a leaf, at one of its slab's cosines.
+// A landmark inside a leaf.
 struct Visit {
   std::size_t task;
-  int theta;
+  const Slab::Landmark* landmark;
 };
 
 // Evaluates the tasks in one batch and analyses each leaf.
-void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Field& field, const GrowthRules& rules,
-              const Host& host, std::uint64_t* evaluations) {
+void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Field& field,
+              const GrowthRules& rules, const Host& host, std::uint64_t* evaluations) {
   std::vector<FieldPoint> points;
   points.reserve(tasks.size() * grid_points);
   for (const Task& task : tasks) {
@@ -53,12 +53,10 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const Slab& slab = slabs[tasks[t].slab];
     const Box box = box_of(slab.nodes[tasks[t].node].leaf.cell, field.domain);
-    for (std::size_t k = 0; k < theta_nodes; ++k) {
-      for (const Vec2<float>& p : slab.landmarks[k]) {
-        if (!contains(box, p)) continue;
-        visits.push_back({t, int(k)});
-        points.push_back({slab.cos_theta_o[k], p});
-      }
+    for (const Slab::Landmark& landmark : slab.landmarks) {
+      if (!contains(box, landmark.point.p)) continue;
+      visits.push_back({t, &landmark});
+      points.push_back(landmark.point);
     }
   }
   std::vector<FieldValue> values(points.size());
@@ -68,16 +66,16 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
     const float a = slab.albedo[theta];
     return a > 0 ? FieldValue{values[i].mean / a, values[i].upper / a} : FieldValue{0, 0};
   };
-  const auto note = [&](const Slab& slab, Leaf& leaf, std::size_t theta, std::size_t i, float value) {
-    if (!(value > leaf.seen)) return;
-    leaf.seen = value;
-    leaf.seen_theta = lerp(0.5f * float(theta), slab.theta_lo, slab.theta_hi);
-    leaf.seen_at = points[i].p;
+  const auto note = [&](Leaf& leaf, float theta, std::size_t i, float value) {
+    if (value > leaf.seen) leaf.seen = value, leaf.seen_theta = theta, leaf.seen_at = points[i].p;
   };
   for (std::size_t v = 0; v < visits.size(); ++v) {
-    const std::size_t i = tasks.size() * grid_points + v, theta = std::size_t(visits[v].theta);
-    Slab& slab = slabs[tasks[visits[v].task].slab];
-    note(slab, slab.nodes[tasks[visits[v].task].node].leaf, theta, i, normalised(slab, theta, i).upper);
+    const Slab::Landmark& landmark = *visits[v].landmark;
+    const Task& task = tasks[visits[v].task];
+    const std::size_t i = tasks.size() * grid_points + v;
+    if (landmark.albedo > 0) {
+      note(slabs[task.slab].nodes[task.node].leaf, landmark.theta, i, values[i].upper / landmark.albedo);
+    }
   }
   host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
@@ -87,9 +85,15 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
       for (std::size_t i = 0; i < grid.size(); ++i) {
         const std::size_t theta = i / (grid_size * grid_size);
         grid[i] = normalised(slab, theta, t * grid_points + i);
-        note(slab, leaf, theta, t * grid_points + i, grid[i].upper);
+        note(leaf, lerp(0.5f * float(theta), slab.theta_lo, slab.theta_hi), t * grid_points + i,
+             grid[i].upper);
       }
       rules.analyse(leaf, grid);
+      if (rules.bounds) {
+        const Box box = box_of(leaf.cell, field.domain);
+        leaf.share = max(leaf.share, leaf.seen / shape(leaf, box, leaf.seen_at));
+        leaf.cost = area_share(leaf.cell) * leaf.share;
+      }
     }
   });
 }
@@ -133,13 +137,22 @@ bool may_split(Leaf& leaf) {
 }  // namespace
 
 Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Domain& domain) {
+  constexpr int landmark_steps = 12;
   Slab slab{theta_lo, theta_hi, {}, {}, {}, {Node{}}};
+  // Just inside the borders, where a neighbour's kink does not reach.
+  const auto cosine_at = [&](float t) {
+    return clamp(cos(lerp(clamp(t, 1e-4f, 1 - 1e-4f), theta_lo, theta_hi)), min_cos_theta_o, 1.f);
+  };
   for (std::size_t k = 0; k < theta_nodes; ++k) {
-    // Just inside the borders, where a neighbour's kink does not reach.
-    const float t = k == 0 ? 1e-4f : k == 1 ? 0.5f : 1 - 1e-4f;
-    slab.cos_theta_o[k] = max(cos(lerp(t, theta_lo, theta_hi)), min_cos_theta_o);
+    slab.cos_theta_o[k] = cosine_at(0.5f * float(k));
     slab.albedo[k] = albedo_at(table, slab.cos_theta_o[k]);
-    for (int i = 0; i < landmark_count; ++i) slab.landmarks[k][std::size_t(i)] = landmark(domain, slab.cos_theta_o[k], i);
+  }
+  for (int step = 0; step <= landmark_steps; ++step) {
+    const float t = float(step) / landmark_steps, c = cosine_at(t);
+    for (int i = 0; i < landmark_count; ++i) {
+      slab.landmarks.push_back(
+          {{c, landmark(domain, c, i)}, albedo_at(table, c), lerp(t, theta_lo, theta_hi)});
+    }
   }
   return slab;
 }
@@ -257,39 +270,110 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
   }
 }
 
-void analyse_exact(Leaf& leaf, const Grid& grid) {
-  // Maxima of the whole leaf, of each theta, and of the halves along each axis.
-  float by_theta[theta_nodes] = {}, half_x[2] = {}, half_y[2] = {};
-  float mean = 0;
-  for (int k = 0; k < theta_nodes; ++k) {
-    for (int j = 0; j < grid_size; ++j) {
-      for (int i = 0; i < grid_size; ++i) {
-        const FieldValue v = grid[std::size_t((k * grid_size + j) * grid_size + i)];
-        by_theta[k] = max(by_theta[k], v.upper);
-        half_x[i >= grid_size / 2] = max(half_x[i >= grid_size / 2], v.upper);
-        half_y[j >= grid_size / 2] = max(half_y[j >= grid_size / 2], v.upper);
-        mean += theta_weights[k] * lobatto_weights[j] * lobatto_weights[i] * v.mean;
-      }
+namespace {
+
+using Values = float[grid_size][grid_size];  // [y][x]
+
+// Mean and slopes of the best line along each axis: 3 E[v s] / E[v], in 1/128 as stored.
+struct Fit {
+  float mean, slope_x, slope_y;
+};
+Fit fit(const Values& v) {
+  float mean = 0, mx = 0, my = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i) {
+      const float w = lobatto_weights[j] * lobatto_weights[i] * v[j][i];
+      mean += w;
+      mx += w * lobatto_nodes[i];
+      my += w * lobatto_nodes[j];
     }
   }
-  const float area = area_share(leaf.cell);
-  float maximum = 0, mean_maximum = 0;
-  for (int k = 0; k < theta_nodes; ++k) {
-    maximum = max(maximum, by_theta[k]);
-    mean_maximum += theta_weights[k] * by_theta[k];
+  const auto stored = [mean](float moment) {
+    return mean > 0 ? std::round(clamp(3 * moment / mean, -0.96875f, 0.96875f) * 128) / 128 : 0.f;
+  };
+  return {mean, stored(mx), stored(my)};
+}
+
+// Whether lines along x miss the rows by more than lines along y miss the columns: the axis to split.
+bool rows_are_rougher(const Values& v, const DyadicCell& cell) {
+  float miss_x = 0, miss_y = 0;
+  for (int a = 0; a < grid_size; ++a) {
+    float row = 0, row1 = 0, column = 0, column1 = 0;
+    for (int b = 0; b < grid_size; ++b) {
+      const float w = lobatto_weights[b];
+      row += w * v[a][b], row1 += 3 * w * v[a][b] * lobatto_nodes[b];
+      column += w * v[b][a], column1 += 3 * w * v[b][a] * lobatto_nodes[b];
+    }
+    for (int b = 0; b < grid_size; ++b) {
+      const float w = lobatto_weights[a] * lobatto_weights[b];
+      miss_x += w * sqr(v[a][b] - row - row1 * lobatto_nodes[b]);
+      miss_y += w * sqr(v[b][a] - column - column1 * lobatto_nodes[b]);
+    }
   }
+  return miss_x > miss_y || (miss_x == miss_y && cell.level_x <= cell.level_y);
+}
+
+float grid_shape(float slope_x, float slope_y, int j, int i) {
+  return (1 + slope_x * lobatto_nodes[i]) * (1 + slope_y * lobatto_nodes[j]);
+}
+
+}  // namespace
+
+void analyse_exact(Leaf& leaf, const Grid& grid) {
+  const auto upper = [&](int k, int j, int i) {
+    return grid[std::size_t((k * grid_size + j) * grid_size + i)].upper;
+  };
+  Values envelope;
+  float mean = 0, highest = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i) {
+      envelope[j][i] = 0;
+      for (int k = 0; k < theta_nodes; ++k) {
+        envelope[j][i] = max(envelope[j][i], upper(k, j, i));
+        mean += theta_weights[k] * lobatto_weights[j] * lobatto_weights[i] *
+                grid[std::size_t((k * grid_size + j) * grid_size + i)].mean;
+      }
+      highest = max(highest, envelope[j][i]);
+    }
+  }
+  // Of a few shapes, the one that the envelope needs to be raised least: the best lines, milder ones, flat.
+  const Fit line = fit(envelope);
+  leaf.share = 1e30f;
+  for (const float part_x : {0.f, 0.75f, 1.f}) {
+    for (const float part_y : {0.f, 0.75f, 1.f}) {
+      const float gx = std::round(part_x * line.slope_x * 128) / 128,
+                  gy = std::round(part_y * line.slope_y * 128) / 128;
+      float bound = 0;
+      for (int j = 0; j < grid_size; ++j) {
+        for (int i = 0; i < grid_size; ++i) bound = max(bound, envelope[j][i] / grid_shape(gx, gy, j, i));
+      }
+      if (bound < leaf.share) leaf.share = bound, leaf.slope_x = gx, leaf.slope_y = gy;
+    }
+  }
+  float steady = 0, peak = -1;
+  for (int k = 0; k < theta_nodes; ++k) {
+    float bound = 0;
+    for (int j = 0; j < grid_size; ++j) {
+      for (int i = 0; i < grid_size; ++i) {
+        const float ratio = upper(k, j, i) / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
+        bound = max(bound, ratio);
+        if (ratio > peak) peak = ratio, leaf.peak = std::uint8_t((k * grid_size + j) * grid_size + i);
+      }
+    }
+    steady += theta_weights[k] * bound;
+  }
+  const float area = area_share(leaf.cell);
   leaf.ideal = area * mean;
-  leaf.theta_cost = area * (maximum - mean_maximum);
-  leaf.share = max(maximum, leaf.seen);
+  leaf.theta_cost = area * (leaf.share - steady);
+  leaf.split_x = rows_are_rougher(envelope, leaf.cell);
+  if (towers(leaf, highest)) leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
+  leaf.share = max(leaf.share, floor_share);
   leaf.cost = area * leaf.share;
-  const float gain_x = abs(half_x[0] - half_x[1]), gain_y = abs(half_y[0] - half_y[1]);
-  leaf.split_x = gain_x > gain_y || (gain_x == gain_y && leaf.cell.level_x <= leaf.cell.level_y);
-  if (towers(leaf, maximum)) leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
 }
 
 void analyse_one_shot(Leaf& leaf, const Grid& grid) {
-  float m[grid_size][grid_size], s[grid_size][grid_size];  // mean and mean square over theta_o
-  float mean = 0, mx = 0, my = 0;
+  Values m, s;  // mean and mean square over theta_o
+  float highest = 0;
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
       m[j][i] = s[j][i] = 0;
@@ -297,55 +381,43 @@ void analyse_one_shot(Leaf& leaf, const Grid& grid) {
         const FieldValue v = grid[std::size_t((k * grid_size + j) * grid_size + i)];
         m[j][i] += theta_weights[k] * v.mean;
         s[j][i] += theta_weights[k] * (sqr(v.mean) + sqr(v.upper - v.mean));
+        highest = max(highest, v.upper);
       }
-      const float w = lobatto_weights[j] * lobatto_weights[i];
-      mean += w * m[j][i];
-      mx += w * m[j][i] * lobatto_nodes[i];
-      my += w * m[j][i] * lobatto_nodes[j];
     }
   }
-  // The best line through m has slope 3 E[m s] / E[m]; stored in 8 bits.
-  const auto quantised = [mean](float moment) {
-    const float slope = mean > 0 ? clamp(3 * moment / mean, -0.96875f, 0.96875f) : 0.f;
-    return std::round(slope * 128) / 128;
-  };
-  leaf.slope_x = quantised(mx);
-  leaf.slope_y = quantised(my);
-  float square = 0, steady = 0, miss_x = 0, miss_y = 0;
+  const Fit line = fit(m);
+  leaf.slope_x = line.slope_x, leaf.slope_y = line.slope_y;
+  float square = 0, steady = 0;
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
-      const float q = (1 + leaf.slope_x * lobatto_nodes[i]) * (1 + leaf.slope_y * lobatto_nodes[j]);
-      const float w = lobatto_weights[j] * lobatto_weights[i];
-      square += w * s[j][i] / q;
-      steady += w * sqr(m[j][i]) / q;
-    }
-  }
-  // What a line along x misses in each row, and along y in each column: the axis to split.
-  for (int a = 0; a < grid_size; ++a) {
-    float row = 0, row1 = 0, column = 0, column1 = 0;
-    for (int b = 0; b < grid_size; ++b) {
-      row += lobatto_weights[b] * m[a][b], row1 += 3 * lobatto_weights[b] * m[a][b] * lobatto_nodes[b];
-      column += lobatto_weights[b] * m[b][a], column1 += 3 * lobatto_weights[b] * m[b][a] * lobatto_nodes[b];
-    }
-    for (int b = 0; b < grid_size; ++b) {
-      const float w = lobatto_weights[a] * lobatto_weights[b];
-      miss_x += w * sqr(m[a][b] - row - row1 * lobatto_nodes[b]);
-      miss_y += w * sqr(m[b][a] - column - column1 * lobatto_nodes[b]);
+      const float w = lobatto_weights[j] * lobatto_weights[i] / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
+      square += w * s[j][i];
+      steady += w * sqr(m[j][i]);
     }
   }
   const float area = area_share(leaf.cell);
-  leaf.share = sqrt(square);
-  leaf.ideal = area * mean;
-  leaf.cost = max(area * leaf.share, leaf.ideal);
+  leaf.share = max(sqrt(square), floor_share);
+  leaf.ideal = area * line.mean;
+  leaf.cost = max(area * sqrt(square), leaf.ideal);
   leaf.theta_cost = area * (sqrt(square) - sqrt(steady));
-  leaf.split_x = miss_x > miss_y || (miss_x == miss_y && leaf.cell.level_x <= leaf.cell.level_y);
+  leaf.split_x = rows_are_rougher(m, leaf.cell);
   // A needle between the points of the grid: pretend that it fills 1/16 of the leaf, until the grid sees it.
-  float maximum = 0;
-  for (const FieldValue& v : grid) maximum = max(maximum, v.upper);
-  if (towers(leaf, maximum)) {
+  if (towers(leaf, highest)) {
     leaf.cost = area * sqrt(square + sqr(leaf.seen) / 16);
     leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
   }
+}
+
+GridPlace grid_place(std::size_t index) {
+  const std::size_t i = index % grid_size, j = index / grid_size % grid_size,
+                    k = index / (grid_size * grid_size);
+  return {0.5f * float(k), 0.5f * (1 + lobatto_nodes[i]), 0.5f * (1 + lobatto_nodes[j])};
+}
+
+float shape(const Leaf& leaf, const Box& box, Vec2<float> p) {
+  const float s = clamp(2 * (p.x - box.x0) / box.width - 1, -1.f, 1.f);
+  const float t = clamp(2 * (p.y - box.y0) / box.height - 1, -1.f, 1.f);
+  return (1 + leaf.slope_x * s) * (1 + leaf.slope_y * t);
 }
 
 }  // namespace reflectree::detail

@@ -20,6 +20,8 @@ struct DyadicCell {
   std::uint32_t ix = 0, iy = 0;
   std::uint8_t level_x = 0, level_y = 0;
 };
+// No leaf keeps less than this share of the slab's mean density: none loses support.
+inline constexpr float floor_share = 1e-3f;
 inline constexpr int max_level = 15;  // locations pack into 16 bits an axis
 
 struct Box {  // in square coordinates
@@ -43,15 +45,22 @@ inline constexpr float lobatto_nodes[grid_size] = {-0.9999f, -0.447213595f, 0.44
 inline constexpr float lobatto_weights[grid_size] = {1.f / 12, 5.f / 12, 5.f / 12, 1.f / 12};
 inline constexpr float theta_weights[theta_nodes] = {1.f / 6, 4.f / 6, 1.f / 6};
 
+// Where a point of the grid lies: shares of slab and leaf, in [0, 1].
+struct GridPlace {
+  float theta, x, y;
+};
+GridPlace grid_place(std::size_t index);
+
 // T / albedo on the grid of a leaf: [theta][y][x].
 using Grid = std::array<FieldValue, grid_points>;
 
 struct Leaf {
   DyadicCell cell;
   float ideal = 0, cost = 0, theta_cost = 0;  // theta_cost: the part of the cost that narrower slabs save
-  float share = 0;                            // per unit area: maximum, or root mean square
+  float share = 0;                            // per unit area: bound of T / (albedo q), or root mean square
   bool split_x = false;
-  float slope_x = 0, slope_y = 0;  // one-shot
+  std::uint8_t peak = 0;           // exact: index in the grid of the largest T / (albedo q)
+  float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)
   // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
   // has found once is not lost between the points of a finer grid.
   float seen = 0, seen_theta = 0;
@@ -67,7 +76,12 @@ struct Node {
 struct Slab {
   float theta_lo, theta_hi;
   std::array<float, theta_nodes> cos_theta_o, albedo;
-  std::array<std::array<Vec2<float>, landmark_count>, theta_nodes> landmarks;
+  // Landmarks along the slab: they move with theta_o.
+  struct Landmark {
+    FieldPoint point;
+    float albedo, theta;
+  };
+  std::vector<Landmark> landmarks;
   std::vector<Node> nodes;  // nodes[0] is the root
 };
 
@@ -76,6 +90,7 @@ struct GrowthRules {
   float theta_share;  // a slab whose theta cost exceeds this share of (goal - 1) is halved
   std::size_t max_leaves = 60000;
   bool split_slabs = true;
+  bool bounds = true;  // shares bound what was seen (exact), or fit it (one-shot)
   std::function<void(Leaf&, const Grid&)> analyse;
 };
 
@@ -86,6 +101,9 @@ std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
 // Grows until every slab meets the goal; slabs stay ordered by theta_o.
 void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albedo, const GrowthRules& rules,
           const Host& host, std::uint64_t* evaluations);
+
+// The shape q of a leaf at p.
+float shape(const Leaf& leaf, const Box& box, Vec2<float> p);
 
 void analyse_exact(Leaf& leaf, const Grid& grid);
 void analyse_one_shot(Leaf& leaf, const Grid& grid);

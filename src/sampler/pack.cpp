@@ -31,8 +31,7 @@ CosineLookup lookup_of(const Partition& partition) {
 
 // Walker's alias table in integers (Vose 1991): `bucket` * count = sum(mass), so that every probability is
 // exact. The heaviest leaf first takes up what is missing to a multiple of the count.
-template <class Leaf>
-std::uint32_t make_alias_table(Leaf* leaves, std::uint32_t count) {
+std::uint32_t make_alias_table(PackedLeaf* leaves, std::uint32_t count) {
   std::uint64_t sum = 0;
   std::uint32_t heaviest = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -51,15 +50,17 @@ std::uint32_t make_alias_table(Leaf* leaves, std::uint32_t count) {
     const std::uint32_t s = small.back(), l = large.back();
     small.pop_back();
     leaves[s].threshold = std::uint32_t(left[s]);
-    leaves[s].alias = l;
+    leaves[s].alias = std::uint16_t(l);
     left[l] -= bucket - left[s];
     if (left[l] < bucket) {
       large.pop_back();
       small.push_back(l);
     }
   }
-  for (const std::uint32_t i : large) leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = i;
-  for (const std::uint32_t i : small) leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = i;
+  for (const std::uint32_t i : large)
+    leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = std::uint16_t(i);
+  for (const std::uint32_t i : small)
+    leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = std::uint16_t(i);
   return std::uint32_t(bucket);
 }
 
@@ -83,29 +84,48 @@ std::vector<PackedCell> packed_cells(const std::vector<Split>& nodes) {
   return cells;
 }
 
-// Preorder to an array in which the two children of a node are neighbours, with the share of probability of
-// the first; returns the mass of the subtree.
+// Appends the inner nodes of a subtree in preorder.
 struct DescentBuilder {
-  const DensityTree& tree;
-  const OneShotLeaf* leaves;
+  const Tree& tree;
+  const PackedLeaf* leaves;
   std::vector<DescentNode>& nodes;
-  std::size_t base;
   std::size_t next_node = 0;
   std::uint32_t next_leaf = 0;
 
-  double place(std::size_t at) {
+  struct Subtree {
+    double mass;
+    std::uint32_t leaves;
+  };
+  Subtree add() {
     const Split split = tree.nodes[next_node++];
-    if (split == Split::leaf) {
-      nodes[base + at] = {0, next_leaf, Split::leaf};
-      return leaves[next_leaf++].mass;
-    }
-    const std::size_t child = nodes.size() - base;
-    nodes.resize(nodes.size() + 2);
-    const double lower = place(child), upper = place(child + 1);
-    nodes[base + at] = {lower / (lower + upper), std::uint32_t(child), split};
-    return lower + upper;
+    if (split == Split::leaf) return {double(leaves[next_leaf++].mass), 1};
+    const std::size_t at = nodes.size();
+    nodes.emplace_back();
+    const Subtree lower = add(), upper = add();
+    nodes[at].lower = float(lower.mass / (lower.mass + upper.mass));
+    nodes[at].lower_leaves = lower.leaves & 0x7fffffffU;
+    nodes[at].split_x = split == Split::x;
+    return {lower.mass + upper.mass, lower.leaves + upper.leaves};
   }
 };
+
+// Appends a slab with its leaves and alias table; slabs ascend in theta_o, the forest in the cosine.
+PackedSlab& append(const Tree& tree, PackedForest& forest) {
+  PackedSlab slab;
+  slab.first = std::uint32_t(forest.leaves.size());
+  slab.count = std::uint32_t(tree.mass.size());
+  const std::vector<PackedCell> cells = packed_cells(tree.nodes);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    forest.leaves.push_back({0, tree.mass[i], 0, cells[i], tree.slope_x[i], tree.slope_y[i]});
+  }
+  slab.bucket = make_alias_table(forest.leaves.data() + slab.first, slab.count);
+  return forest.slabs.emplace_back(slab);
+}
+
+std::size_t bytes_of(const PackedForest& forest) {
+  return forest.lookup.bytes() + forest.slabs.size() * sizeof(PackedSlab) +
+         forest.leaves.size() * sizeof(PackedLeaf) + forest.nodes.size() * sizeof(DescentNode);
+}
 
 }  // namespace
 
@@ -114,85 +134,64 @@ PackedSampler pack(const SamplerData& data) {
   PackedSampler packed;
   packed.domain = data.domain;
   packed.target = data.target;
-  packed.exact_lookup = lookup_of(data.exact_partition);
-  packed.one_shot_lookup = lookup_of(data.one_shot_partition);
   packed.albedo_lookup = CosineLookup(data.albedo.cos_theta_o);
   packed.albedo = data.albedo.albedo;
-
+  packed.exact.lookup = lookup_of(data.exact_partition);
   for (auto tree = data.exact.rbegin(); tree != data.exact.rend(); ++tree) {
-    ExactSlab slab;
-    slab.first = std::uint32_t(packed.exact_leaves.size());
-    slab.count = std::uint32_t(tree->mass.size());
-    const std::vector<PackedCell> cells = packed_cells(tree->nodes);
     double sum = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      packed.exact_leaves.push_back({0, 0, tree->mass[i], cells[i]});
-      sum += tree->mass[i];
-    }
-    slab.unit = std::nextafter(float(double(tree->volume) / sum), 1e30f);
-    slab.bucket = make_alias_table(packed.exact_leaves.data() + slab.first, slab.count);
-    packed.exact.push_back(slab);
+    for (const std::uint32_t m : tree->mass) sum += m;
+    append(*tree, packed.exact).unit = std::nextafter(float(double(tree->volume) / sum), 1e30f);
   }
+  packed.one_shot.lookup = lookup_of(data.one_shot_partition);
   for (auto tree = data.one_shot.rbegin(); tree != data.one_shot.rend(); ++tree) {
-    OneShotSlab slab;
-    slab.first = std::uint32_t(packed.one_shot_leaves.size());
-    slab.count = std::uint32_t(tree->mass.size());
-    const std::vector<PackedCell> cells = packed_cells(tree->nodes);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      packed.one_shot_leaves.push_back({0, 0, tree->mass[i], cells[i], tree->slope_x[i], tree->slope_y[i]});
-    }
-    OneShotLeaf* leaves = packed.one_shot_leaves.data() + slab.first;
-    slab.bucket = make_alias_table(leaves, slab.count);
+    PackedSlab& slab = append(*tree, packed.one_shot);
     slab.unit = float(1 / (double(slab.bucket) * slab.count));
-    slab.first_node = std::uint32_t(packed.one_shot_nodes.size());
-    packed.one_shot_nodes.emplace_back();
-    DescentBuilder{*tree, leaves, packed.one_shot_nodes, slab.first_node}.place(0);
-    packed.one_shot.push_back(slab);
+    slab.first_node = std::uint32_t(packed.one_shot.nodes.size());
+    DescentBuilder{*tree, packed.one_shot.leaves.data() + slab.first, packed.one_shot.nodes}.add();
   }
   return packed;
 }
 
-std::size_t bytes_of(const PackedSampler& p) {
-  return p.exact_lookup.bytes() + p.one_shot_lookup.bytes() + p.albedo_lookup.bytes() +
-         p.exact.size() * sizeof(ExactSlab) + p.exact_leaves.size() * sizeof(ExactLeaf) +
-         p.one_shot.size() * sizeof(OneShotSlab) + p.one_shot_leaves.size() * sizeof(OneShotLeaf) +
-         p.one_shot_nodes.size() * sizeof(DescentNode) + p.albedo.size() * sizeof(float) +
-         sizeof(PackedSampler);
+std::size_t bytes_of(const PackedSampler& packed) {
+  return sizeof packed + bytes_of(packed.exact) + bytes_of(packed.one_shot) + packed.albedo_lookup.bytes() +
+         packed.albedo.size() * sizeof(float);
 }
 
 namespace detail {
 
-Located locate(const PackedSampler& packed, const OneShotSlab& slab, Vec2<float> p) {
-  const DescentNode* nodes = packed.one_shot_nodes.data() + slab.first_node;
+Located locate(const PackedSampler& packed, const PackedSlab& slab, Vec2<float> p) {
+  const DescentNode* node = packed.one_shot.nodes.data() + slab.first_node;
+  const PackedLeaf* leaf = packed.one_shot.leaves.data() + slab.first;
   // The share of each uniform's [0, 1) that leads to the node.
   double lo1 = 0, size1 = 1, lo2 = 0, size2 = 1;
   float x0 = -1, width = 2, y0 = packed.domain.half ? 0.f : -1.f, height = packed.domain.half ? 1.f : 2.f;
-  std::uint32_t i = 0;
-  while (nodes[i].split != Split::leaf) {
-    const bool x = nodes[i].split == Split::x;
+  for (std::uint32_t leaves = slab.count; leaves > 1;) {
+    const bool x = node->split_x;
     float &start = x ? x0 : y0, &size = x ? width : height;
     double &lo = x ? lo1 : lo2, &share = x ? size1 : size2;
+    const double lower = double(node->lower);
+    const std::uint32_t below_count = node->lower_leaves;
     size *= 0.5f;
-    const bool up = (x ? p.x : p.y) >= start + size;
-    if (up) {
-      start += size;
-      lo += share * nodes[i].lower;
-      share *= 1 - nodes[i].lower;
+    if ((x ? p.x : p.y) < start + size) {
+      share *= lower;
+      leaves = below_count;
+      ++node;
     } else {
-      share *= nodes[i].lower;
+      start += size;
+      lo += share * lower;
+      share *= 1 - lower;
+      leaves -= below_count;
+      leaf += below_count;
+      node += below_count;
     }
-    i = nodes[i].child + up;
   }
-  const OneShotLeaf& leaf = packed.one_shot_leaves[slab.first + nodes[i].child];
-  const float gx = float(leaf.slope_x) / 128, gy = float(leaf.slope_y) / 128;
+  const float gx = float(leaf->slope_x) / 128, gy = float(leaf->slope_y) / 128;
+  const float tx = clamp((p.x - x0) / width, 0.f, 1.f), ty = clamp((p.y - y0) / height, 0.f, 1.f);
   Located at;
-  at.leaf = &leaf;
-  at.tx = clamp((p.x - x0) / width, 0.f, 1.f);
-  at.ty = clamp((p.y - y0) / height, 0.f, 1.f);
-  at.density = slab.unit * float(leaf.mass) * unpack(leaf.cell, packed.domain.half).inverse_area *
-               (1 + gx * (2 * at.tx - 1)) * (1 + gy * (2 * at.ty - 1));
-  at.u1 = lo1 + size1 * double(linear_cdf(gx, at.tx));
-  at.u2 = lo2 + size2 * double(linear_cdf(gy, at.ty));
+  at.density = slab.unit * float(leaf->mass) * unpack(leaf->cell, packed.domain.half).inverse_area *
+               (1 + gx * (2 * tx - 1)) * (1 + gy * (2 * ty - 1));
+  at.u1 = lo1 + size1 * double(linear_cdf(gx, tx));
+  at.u2 = lo2 + size2 * double(linear_cdf(gy, ty));
   return at;
 }
 

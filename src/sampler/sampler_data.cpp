@@ -52,14 +52,13 @@ namespace {
 }
 
 // Complete preorder tree of at most 15 levels an axis, one nonzero mass a leaf.
-void check_tree(const std::vector<Split>& nodes, const std::vector<std::uint32_t>& mass, bool may_be_empty,
-                const std::string& where) {
+void check_tree(const Tree& tree, const std::string& where) {
   struct Levels {
     int x, y;
   };
   std::vector<Levels> stack{{0, 0}};
   std::size_t leaves = 0;
-  for (const Split split : nodes) {
+  for (const Split split : tree.nodes) {
     if (stack.empty()) fail("the tree goes on after its end", where);
     const Levels l = stack.back();
     stack.pop_back();
@@ -74,13 +73,18 @@ void check_tree(const std::vector<Split>& nodes, const std::vector<std::uint32_t
     stack.push_back(child);
   }
   if (!stack.empty()) fail("the tree is incomplete", where);
-  if (mass.size() != leaves) fail("the number of masses differs from that of leaves", where);
-  std::uint64_t sum = 0;
-  for (const std::uint32_t m : mass) {
-    if (m == 0 && !may_be_empty) fail("a leaf has lost its support (mass 0)", where);
-    sum += m;
+  if (leaves > 65535) fail("more than 65535 leaves", where);
+  if (tree.mass.size() != leaves || tree.slope_x.size() != leaves || tree.slope_y.size() != leaves) {
+    fail("one mass and two slopes a leaf are needed", where);
   }
-  if (sum == 0 || sum > 0xffffffffULL) fail("the masses do not sum to 1 .. 2^32 - 1", where);
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < leaves; ++i) {
+    if (tree.mass[i] == 0) fail("a leaf has lost its support (mass 0)", where);
+    if (tree.slope_x[i] == -128 || tree.slope_y[i] == -128)
+      fail("a slope empties an edge of its leaf", where);
+    sum += tree.mass[i];
+  }
+  if (sum > 0xffffffffULL) fail("the masses sum to more than 2^32 - 1", where);
 }
 
 }  // namespace
@@ -100,7 +104,7 @@ void validate(const SamplerData& data) {
   if (data.exact.size() > 60000 || data.one_shot.size() > 60000) fail("more than 60000 slabs", "partitions");
   for (std::size_t s = 0; s < data.exact.size(); ++s) {
     const std::string where = "exact tree " + std::to_string(s);
-    check_tree(data.exact[s].nodes, data.exact[s].mass, false, where);
+    check_tree(data.exact[s], where);
     if (!(std::isfinite(data.exact[s].volume) && data.exact[s].volume >= 0))
       fail("the volume is not a number", where);
     if (data.exact[s].status != BoundStatus::certified && data.exact[s].status != BoundStatus::estimated) {
@@ -108,16 +112,7 @@ void validate(const SamplerData& data) {
     }
   }
   for (std::size_t s = 0; s < data.one_shot.size(); ++s) {
-    const DensityTree& tree = data.one_shot[s];
-    const std::string where = "one-shot tree " + std::to_string(s);
-    check_tree(tree.nodes, tree.mass, false, where);
-    if (tree.slope_x.size() != tree.mass.size() || tree.slope_y.size() != tree.mass.size()) {
-      fail("one slope a leaf and axis is needed", where);
-    }
-    for (std::size_t i = 0; i < tree.mass.size(); ++i) {
-      if (tree.slope_x[i] == -128 || tree.slope_y[i] == -128)
-        fail("a slope empties an edge of its leaf", where);
-    }
+    check_tree(data.one_shot[s], "one-shot tree " + std::to_string(s));
   }
   const AlbedoTable& a = data.albedo;
   if (a.cos_theta_o.size() < 2 || a.cos_theta_o.size() != a.albedo.size() || a.cos_theta_o.size() > 60000) {

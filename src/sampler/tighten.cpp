@@ -11,8 +11,6 @@ namespace reflectree::detail {
 
 namespace {
 
-// No leaf that is not proved empty loses support.
-constexpr float floor_share = 1e-3f;
 // What the climb may miss at a smooth summit: its last step spans 1/64 of the leaf.
 constexpr float margin = 1e-3f;
 
@@ -31,9 +29,11 @@ FieldPoint point_of(const Climber& c, const float at[3]) {
           {c.box.x0 + c.box.width * at[1], c.box.y0 + c.box.height * at[2]}};
 }
 
-float ratio_of(const AlbedoTable& albedo, const FieldPoint& p, FieldValue v) {
+// T / (albedo q): what the leaf's bound must reach at p.
+float ratio_of(const AlbedoTable& albedo, const Leaf& leaf, const Box& box, const FieldPoint& p,
+               FieldValue v) {
   const float a = albedo_at(albedo, p.cos_theta_o);
-  return a > 0 ? v.upper / a : 0.f;
+  return a > 0 ? v.upper / (a * shape(leaf, box, p.p)) : 0.f;
 }
 
 // Coordinate steps up and down each axis, all climbers in one batch; steps shrink where none helps.
@@ -61,7 +61,7 @@ void climb(std::vector<Climber>& climbers, int rounds, const Field& field, const
         float r[6];
         for (int k = 0; k < 6; ++k) {
           const std::size_t j = i * 6 + std::size_t(k);
-          r[k] = ratio_of(albedo, points[j], values[j]);
+          r[k] = ratio_of(albedo, *c.leaf, c.box, points[j], values[j]);
         }
         // Along each axis move to the better side, if it is better than here; else come closer.
         const Climber before = c;
@@ -83,21 +83,21 @@ void climb(std::vector<Climber>& climbers, int rounds, const Field& field, const
   }
 }
 
-Climber start_at(Slab& slab, Leaf& leaf, float theta, Vec2<float> p, float value, float step,
-                 const Domain& domain) {
-  Climber c{&slab, &leaf, box_of(leaf.cell, domain), {}, {step, step, step}, value};
-  c.at[0] = (theta - slab.theta_lo) / (slab.theta_hi - slab.theta_lo);
-  c.at[1] = (p.x - c.box.x0) / c.box.width;
-  c.at[2] = (p.y - c.box.y0) / c.box.height;
-  return c;
+Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float step, const Domain& domain) {
+  return {&slab, &leaf, box_of(leaf.cell, domain), {at.theta, at.x, at.y}, {step, step, step}, value};
+}
+GridPlace place_in(const Slab& slab, const Box& box, float theta, Vec2<float> p) {
+  return {(theta - slab.theta_lo) / (slab.theta_hi - slab.theta_lo), (p.x - box.x0) / box.width,
+          (p.y - box.y0) / box.height};
 }
 
 void raise(const Climber& c, float share) {
   Leaf& leaf = *c.leaf;
-  if (c.value > leaf.seen) {
-    leaf.seen = c.value;
+  const Vec2<float> p{c.box.x0 + c.box.width * c.at[1], c.box.y0 + c.box.height * c.at[2]};
+  const float seen = c.value * shape(leaf, c.box, p);
+  if (seen > leaf.seen) {
+    leaf.seen = seen, leaf.seen_at = p;
     leaf.seen_theta = lerp(c.at[0], c.slab->theta_lo, c.slab->theta_hi);
-    leaf.seen_at = {c.box.x0 + c.box.width * c.at[1], c.box.y0 + c.box.height * c.at[2]};
   }
   leaf.share = max(leaf.share, max(share, floor_share));
   leaf.cost = area_share(leaf.cell) * leaf.share;
@@ -112,8 +112,12 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
     for (std::size_t i = first_new[s]; i < slabs[s].nodes.size(); ++i) {
       Node& node = slabs[s].nodes[i];
       if (node.split != Split::leaf) continue;
-      climbers.push_back(start_at(slabs[s], node.leaf, node.leaf.seen_theta, node.leaf.seen_at, node.leaf.seen,
-                                  0.2f, field.domain));
+      // From the largest ratio of the grid, and from the largest T seen by anyone.
+      Leaf& leaf = node.leaf;
+      const Box box = box_of(leaf.cell, field.domain);
+      climbers.push_back(start_at(slabs[s], leaf, grid_place(leaf.peak), 0, 0.2f, field.domain));
+      climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_theta, leaf.seen_at),
+                                  leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));
     }
   }
   climb(climbers, 7, field, albedo, host, evaluations);
@@ -139,18 +143,19 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
     for (const Target& t : targets) {
       Slab& slab = slabs[t.slab];
       Leaf& leaf = slab.nodes[t.node].leaf;
+      const Box box = box_of(leaf.cell, field.domain);
       double excess = 0;
       float worst = leaf.share;
       std::size_t where = 0;
       for (std::size_t i = t.first; i < t.first + t.count; ++i) {
-        const float r = ratio_of(albedo, points[i], values[i]);
+        const float r = ratio_of(albedo, leaf, box, points[i], values[i]);
         if (r > leaf.share) excess += double(r - leaf.share);
         if (r > worst) worst = r, where = i;
       }
       if (excess > 0) {
         overshoot[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
-        climbers.push_back(start_at(slab, leaf, acos(points[where].cos_theta_o), points[where].p, worst,
-                                    0.05f, field.domain));
+        const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
+        climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
       }
     }
     points.clear(), targets.clear();
@@ -165,7 +170,7 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
       const double fair = double(leaf.cost) / total * double(leaves.size());
       const auto count = std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
       Pcg32 u(seed + s, i);
-      const Climber c = start_at(slab, slab.nodes[i].leaf, slab.theta_lo, leaf.seen_at, 0, 0, field.domain);
+      const Climber c = start_at(slab, slab.nodes[i].leaf, {}, 0, 0, field.domain);
       targets.push_back({s, i, points.size(), count});
       for (std::size_t k = 0; k < count; ++k) {
         const float at[3] = {to_unit_float(u()), to_unit_float(u()), to_unit_float(u())};
@@ -176,8 +181,7 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
   }
   flush();
   climb(climbers, 6, field, albedo, host, evaluations);
-  for (const Climber& c : climbers)
-    raise(c, c.value + 0.5f * (c.value - c.leaf->share) + margin * c.value);
+  for (const Climber& c : climbers) raise(c, c.value + 0.5f * (c.value - c.leaf->share) + margin * c.value);
   return float(*std::max_element(overshoot.begin(), overshoot.end()));
 }
 

@@ -11,6 +11,7 @@
 #include "reflectree/sampler/direction_sample.hpp"
 #include "reflectree/sampler/domain_map.hpp"
 #include "reflectree/sampler/incidence.hpp"
+#include "reflectree/sampler/leaf.hpp"
 #include "reflectree/sampler/statistics.hpp"
 
 namespace reflectree {
@@ -31,7 +32,7 @@ class ExactSampler {
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u, Stats&& stats = {}) const {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
-    const ExactSlab& slab = packed_->exact[packed_->exact_lookup(in.wo.z)];
+    const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
     const float inverse_albedo = 1 / in.albedo;
     for (int trial = 0; trial < max_trials; ++trial) {
       const Candidate c = propose(slab, in, u);
@@ -56,7 +57,7 @@ class ExactSampler {
   std::optional<DirectionSample<Value>> sample_once(Direction wo, U& u) const {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
-    const ExactSlab& slab = packed_->exact[packed_->exact_lookup(in.wo.z)];
+    const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
     const Candidate c = propose(slab, in, u);
     const float ratio = c.target / in.albedo;
     if (!(to_unit_double(u()) * double(c.majorant) < double(ratio))) return std::nullopt;
@@ -84,7 +85,7 @@ class ExactSampler {
   float expected_trials(Direction wo) const {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return 0;
-    return volume(packed_->exact[packed_->exact_lookup(in.wo.z)]);
+    return volume(packed_->exact.slab_at(in.wo.z));
   }
 
  private:
@@ -92,21 +93,21 @@ class ExactSampler {
     DomainPoint point;
     Value value;
     float target;    // T = t * projected_area
-    float majorant;  // M, of T / a
+    float majorant;  // M q, of T / a
   };
 
-  static float volume(const ExactSlab& slab) { return slab.unit * float(slab.bucket) * float(slab.count); }
+  static float volume(const PackedSlab& slab) { return slab.unit * float(slab.bucket) * float(slab.count); }
 
   template <RandomBits U>
-  Candidate propose(const ExactSlab& slab, const Incidence& in, U& u) const {
-    const ExactLeaf& leaf =
-        detail::choose_leaf(slab, packed_->exact_leaves.data() + slab.first, detail::bits64(u));
-    const detail::UnpackedCell cell = detail::unpack(leaf.cell, packed_->domain.half);
+  Candidate propose(const PackedSlab& slab, const Incidence& in, U& u) const {
+    const PackedLeaf& leaf =
+        detail::choose_leaf(slab, packed_->exact.leaves.data() + slab.first, detail::bits64(u));
     const std::uint32_t ux = u(), uy = u();
-    const Vec2<float> p{cell.x0 + cell.width * to_unit_float(ux), cell.y0 + cell.height * to_unit_float(uy)};
+    const detail::PointInLeaf at =
+        detail::place(slab, leaf, packed_->domain.half, to_unit_float(ux), to_unit_float(uy));
     Candidate c;
-    c.point = lift(packed_->domain, in.wo, p);
-    c.majorant = slab.unit * float(leaf.mass) * cell.inverse_area;
+    c.point = lift(packed_->domain, in.wo, at.p);
+    c.majorant = at.height;
     if (packed_->domain.half && (ux & 1U)) {  // a bit that the position does not use
       c.point.geometry.wi.y = -c.point.geometry.wi.y;
       c.point.geometry.wh.y = -c.point.geometry.wh.y;

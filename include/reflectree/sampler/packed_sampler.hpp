@@ -41,48 +41,43 @@ struct PackedCell {
   std::uint16_t x = 1, y = 1;
 };
 
-struct ExactLeaf {
+struct PackedLeaf {
   std::uint32_t threshold;  // of the alias table's bucket with this index
-  std::uint32_t alias;
   std::uint32_t mass;
-  PackedCell cell;
-};
-
-struct OneShotLeaf {
-  std::uint32_t threshold, alias, mass;
+  std::uint16_t alias;
   PackedCell cell;
   std::int8_t slope_x, slope_y;
 };
+static_assert(sizeof(PackedLeaf) == 16);
 
-// A node of a one-shot tree: an inner node splits x or y and sends a share `lower` of the probability to
-// its first child; a leaf names its OneShotLeaf.
-struct DescentNode {
-  double lower;
-  std::uint32_t child;  // of the slab's nodes; for a leaf, index of the leaf
-  Split split;
-};
-
-struct ExactSlab {
+struct PackedSlab {
   std::uint32_t first = 0, count = 0;  // leaves
-  std::uint32_t bucket = 0;            // capacity of each bucket of the alias table
-  float unit = 0;                      // majorant = unit * mass / area
+  std::uint32_t first_node = 0;
+  std::uint32_t bucket = 0;  // capacity of each bucket of the alias table
+  float unit = 0;            // majorant or density = unit * mass / area
 };
 
-struct OneShotSlab {
-  std::uint32_t first = 0, count = 0, first_node = 0;
-  std::uint32_t bucket = 0;
-  float unit = 0;  // density per share of the square = unit * mass / area
+// An inner node of a tree in preorder, without pointers: the subtree of `lower_leaves` leaves below has
+// lower_leaves - 1 inner nodes and follows at once; the upper subtree follows that.
+struct DescentNode {
+  float lower;  // share of the probability
+  std::uint32_t lower_leaves : 31, split_x : 1;
+};
+static_assert(sizeof(DescentNode) == 8);
+
+struct PackedForest {
+  CosineLookup lookup;
+  std::vector<PackedSlab> slabs;  // in order of ascending cos_theta_o
+  std::vector<PackedLeaf> leaves;
+  std::vector<DescentNode> nodes;  // one-shot only
+  const PackedSlab& slab_at(float cos_theta_o) const { return slabs[lookup(cos_theta_o)]; }
 };
 
 struct PackedSampler {
   Domain domain;
   Target target;
-  CosineLookup exact_lookup, one_shot_lookup, albedo_lookup;
-  std::vector<ExactSlab> exact;  // in order of ascending cos_theta_o
-  std::vector<ExactLeaf> exact_leaves;
-  std::vector<OneShotSlab> one_shot;
-  std::vector<OneShotLeaf> one_shot_leaves;
-  std::vector<DescentNode> one_shot_nodes;
+  PackedForest exact, one_shot;
+  CosineLookup albedo_lookup;
   std::vector<float> albedo;
 
   float albedo_at(float cos_theta_o) const {

@@ -21,24 +21,27 @@ enum class BoundStatus : std::uint8_t { certified, estimated };
 // A node of a tree over the square, in preorder; the lower half comes first.
 enum class Split : std::uint8_t { leaf = 0, x = 1, y = 2 };
 
-// Exact mode, one slab: leaf i is chosen with probability mass_i / sum(mass) and bounds the
-// normalised target T / albedo by majorant_i = volume * (mass_i / sum(mass)) / area_i, where area is the
-// leaf's share of the square. The bound is derived from the integer mass, so that rounding
-// costs trials and never exactness. volume = expected trials where the albedo is exact.
-struct MajorantTree {
+// A tree of one slab. Leaf i is chosen with probability mass_i / sum(mass); across it, for s, t in [-1, 1],
+// runs the product-linear shape q = (1 + gx s)(1 + gy t), gx = slope_x / 128 in (-1, 1), whose mean is 1.
+struct Tree {
   std::vector<Split> nodes;
   std::vector<std::uint32_t> mass;  // of each leaf, in preorder
+  std::vector<std::int8_t> slope_x, slope_y;
+  friend bool operator==(const Tree&, const Tree&) = default;
+};
+
+// Exact mode: leaf i bounds the normalised target, T / albedo <= majorant_i q, where
+// majorant_i = volume * (mass_i / sum(mass)) / area_i and area is the leaf's share of the square. The bound
+// is derived from the integer mass, so that rounding costs trials and never exactness. volume = expected
+// trials where the albedo is exact.
+struct MajorantTree : Tree {
   float volume = 0;
   BoundStatus status = BoundStatus::estimated;
   friend bool operator==(const MajorantTree&, const MajorantTree&) = default;
 };
 
-// One-shot mode, one slab: leaf i is chosen with probability mass_i / sum(mass); inside it the density is
-// (1 + gx s)(1 + gy t) for s, t in [-1, 1] across the leaf, gx = slope_x / 128 in (-1, 1).
-struct DensityTree {
-  std::vector<Split> nodes;
-  std::vector<std::uint32_t> mass;
-  std::vector<std::int8_t> slope_x, slope_y;
+// One-shot mode: the density per share of the square is (mass_i / sum(mass)) / area_i q.
+struct DensityTree : Tree {
   friend bool operator==(const DensityTree&, const DensityTree&) = default;
 };
 

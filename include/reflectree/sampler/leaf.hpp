@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// One leaf at run time: choosing it, a point in it, the shape across it.
+#pragma once
+
+#include "reflectree/math/random.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
+
+namespace reflectree::detail {
+
+struct UnpackedCell {
+  float x0, y0, width, height, inverse_area;  // in square coordinates; 1 / share of the square
+};
+inline UnpackedCell unpack(PackedCell cell, bool half) {
+  const int level_x = int(std::bit_width(unsigned(cell.x))) - 1;  // unsigned in libc++ 14
+  const int level_y = int(std::bit_width(unsigned(cell.y))) - 1;
+  // 2^-level, exactly, by building the float's exponent.
+  const float wx = std::bit_cast<float>(std::uint32_t(128 - level_x) << 23U);
+  const float wy = std::bit_cast<float>(std::uint32_t((half ? 127 : 128) - level_y) << 23U);
+  const float y_min = half ? 0.f : -1.f;
+  return {-1 + float(cell.x - (1 << level_x)) * wx, y_min + float(cell.y - (1 << level_y)) * wy, wx, wy,
+          std::bit_cast<float>(std::uint32_t(127 + level_x + level_y) << 23U)};
+}
+
+// The high and low halves of a 64 x 64 bit product: chooses among n with a bias below 2^-64 n.
+struct Product {
+  std::uint64_t high, low;
+};
+inline Product multiply(std::uint64_t a, std::uint64_t b) {
+#ifdef __SIZEOF_INT128__
+  __extension__ typedef unsigned __int128 Wide;
+  const Wide p = Wide(a) * b;
+  return {std::uint64_t(p >> 64U), std::uint64_t(p)};
+#else
+  const std::uint64_t a0 = a & 0xffffffffU, a1 = a >> 32U, b0 = b & 0xffffffffU, b1 = b >> 32U;
+  const std::uint64_t p00 = a0 * b0, p01 = a0 * b1, p10 = a1 * b0, p11 = a1 * b1;
+  const std::uint64_t middle = (p00 >> 32U) + (p01 & 0xffffffffU) + (p10 & 0xffffffffU);
+  return {p11 + (p01 >> 32U) + (p10 >> 32U) + (middle >> 32U), (middle << 32U) | (p00 & 0xffffffffU)};
+#endif
+}
+
+template <RandomBits U>
+std::uint64_t bits64(U& u) {
+  const std::uint64_t high = u();
+  return (high << 32U) | u();
+}
+
+// A leaf in proportion to its mass, by the alias table (Walker 1977) in integers: no rounding bends it.
+inline const PackedLeaf& choose_leaf(const PackedSlab& slab, const PackedLeaf* leaves, std::uint64_t random) {
+  const Product bucket = multiply(random, slab.count);
+  const PackedLeaf& leaf = leaves[bucket.high];
+  return multiply(bucket.low, slab.bucket).high < leaf.threshold ? leaf : leaves[leaf.alias];
+}
+
+// The inverse of the CDF of the density (1 + g s) / 2 on [-1, 1], returned as (s + 1) / 2 in [0, 1].
+inline float sample_linear(float slope, float u) {
+  const float a = 1 - slope, b = 1 + slope;
+  return min(2 * u / (a + sqrt(lerp(u, a * a, b * b))), 1.f);
+}
+inline float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
+
+// A point of a leaf drawn from its shape q, and there majorant * q or density * q: per share of the square.
+struct PointInLeaf {
+  Vec2<float> p;
+  float height;
+};
+inline PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float ux, float uy) {
+  const UnpackedCell cell = unpack(leaf.cell, half);
+  const float gx = float(leaf.slope_x) / 128, gy = float(leaf.slope_y) / 128;
+  const float tx = sample_linear(gx, ux), ty = sample_linear(gy, uy);
+  return {
+      {cell.x0 + cell.width * tx, cell.y0 + cell.height * ty},
+      slab.unit * float(leaf.mass) * cell.inverse_area * (1 + gx * (2 * tx - 1)) * (1 + gy * (2 * ty - 1))};
+}
+
+}  // namespace reflectree::detail
