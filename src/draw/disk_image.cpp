@@ -22,22 +22,6 @@ Direction folded(const Domain& domain, Direction wi) {
   return {wi.x, domain.half ? std::abs(wi.y) : wi.y, wi.z};
 }
 
-// Per pixel: g(leaf, wi, square point, projected area) summed up by disk_image.
-template <class G>
-DiskImage tree_image(const std::vector<Split>& nodes, const Domain& domain, Direction wo, int size,
-                     const G& g) {
-  const LeafFinder finder(nodes, domain);
-  return disk_image(
-      [&](std::span<const Direction> wi, std::span<float> out) {
-        for (std::size_t i = 0; i < wi.size(); ++i) {
-          const Vec2<float> p = lower(domain, wo, folded(domain, wi[i]));
-          const float projected_area = lift(domain, wo, p).projected_area;
-          out[i] = projected_area > 0 ? g(finder.find(p), p) / projected_area : 0.f;
-        }
-      },
-      size);
-}
-
 double total(const std::vector<std::uint32_t>& mass) {
   double sum = 0;
   for (const std::uint32_t m : mass) sum += m;
@@ -47,6 +31,23 @@ double total(const std::vector<std::uint32_t>& mass) {
 // A leaf's share of the square.
 double share(const Cell& c, const Domain& domain) {
   return double(c.x1 - c.x0) * double(c.y1 - c.y0) / (domain.half ? 2.0 : 4.0);
+}
+
+// volume * probability / share * shape / projected_area of the leaf that holds wi.
+DiskImage tree_image(const Tree& tree, const Domain& domain, Direction wo, int size, double volume) {
+  const LeafFinder finder(tree.nodes, domain);
+  const double scale = volume / total(tree.mass);
+  return disk_image(
+      [&](std::span<const Direction> wi, std::span<float> out) {
+        for (std::size_t i = 0; i < wi.size(); ++i) {
+          const Vec2<float> p = lower(domain, wo, folded(domain, wi[i]));
+          const float projected_area = lift(domain, wo, p).projected_area;
+          const LeafFinder::Leaf leaf = finder.find(p);
+          const double mean = scale * tree.mass[leaf.index] / share(leaf.cell, domain);
+          out[i] = projected_area > 0 ? float(mean) * leaf_shape(tree, leaf, p) / projected_area : 0.f;
+        }
+      },
+      size);
 }
 
 }  // namespace
@@ -114,24 +115,20 @@ std::size_t slab_of(const Partition& partition, Direction wo) {
   return find_slab(partition, {&theta_o, 1});
 }
 
+float leaf_shape(const Tree& tree, const LeafFinder::Leaf& leaf, Vec2<float> p) {
+  const Cell& c = leaf.cell;
+  const float s = 2 * (p.x - c.x0) / (c.x1 - c.x0) - 1, t = 2 * (p.y - c.y0) / (c.y1 - c.y0) - 1;
+  return (1 + float(tree.slope_x[leaf.index]) / 128 * s) * (1 + float(tree.slope_y[leaf.index]) / 128 * t);
+}
+
 DiskImage bound_image(const SamplerData& data, Direction wo, int size) {
   const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
-  const double scale = double(tree.volume) / total(tree.mass) * double(albedo_at(data.albedo, wo.z));
-  return tree_image(tree.nodes, data.domain, wo, size, [&](const LeafFinder::Leaf& leaf, Vec2<float>) {
-    return float(scale * tree.mass[leaf.index] / share(leaf.cell, data.domain));
-  });
+  return tree_image(tree, data.domain, wo, size, double(tree.volume) * double(albedo_at(data.albedo, wo.z)));
 }
 
 DiskImage one_shot_image(const SamplerData& data, Direction wo, int size) {
   const DensityTree& tree = data.one_shot.at(slab_of(data.one_shot_partition, wo));
-  const double scale = double(albedo_at(data.albedo, wo.z)) / total(tree.mass);
-  return tree_image(tree.nodes, data.domain, wo, size, [&](const LeafFinder::Leaf& leaf, Vec2<float> p) {
-    const Cell& c = leaf.cell;
-    const float s = 2 * (p.x - c.x0) / (c.x1 - c.x0) - 1, t = 2 * (p.y - c.y0) / (c.y1 - c.y0) - 1;
-    const float slope =
-        (1 + float(tree.slope_x[leaf.index]) / 128 * s) * (1 + float(tree.slope_y[leaf.index]) / 128 * t);
-    return float(scale * tree.mass[leaf.index] / share(c, data.domain)) * slope;
-  });
+  return tree_image(tree, data.domain, wo, size, double(albedo_at(data.albedo, wo.z)));
 }
 
 Axis log_range(const DiskImage& image, double decades) {

@@ -42,6 +42,7 @@ color:var(--ink);font-family:"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial
 .rt .curve-3{stroke:var(--ink);stroke-width:2;stroke-dasharray:5 4}
 .rt .curve-4{stroke:var(--soft);stroke-width:2;stroke-dasharray:1 4}
 .rt .bar{fill:var(--bars);fill-opacity:.5;stroke:none}
+.rt .bar-edge{fill:none;stroke:var(--rule);stroke-width:1}
 .rt .bar-line{stroke:var(--bars);stroke-width:1}
 .rt .fill-1{fill:var(--curve);fill-opacity:.22;stroke:none}
 .rt .fill-2{fill:var(--bars);fill-opacity:.28;stroke:none}

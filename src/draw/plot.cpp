@@ -96,6 +96,7 @@ std::string colour_bar(const ColourBar& bar) {
                                       {"preserveAspectRatio", "none"},
                                       {"href", png_data_uri(strip, *bar.colours)}}) +
                     "\n";
+  out += rectangle(left, bar.y, right - left, bar.height, "bar-edge");
   for (const Tick& t : ticks(bar.values)) {
     const double x = bar.values.at(t.value);
     out += line(x, below, x, below + 3, "axis") + label(x, below + 14, t.text, Anchor::middle, "tick");

@@ -21,7 +21,12 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   const PlaneHistogram histogram = plane_histogram(samples);
   double highest = 0;
   for (const double d : lobe.density) highest = std::max(highest, d);
-  const std::vector<PlaneBar> plane = plane_bars(histogram, lobe);
+  // At most 128 bars of equal probability, each of at least 40 directions.
+  double expected = 0;
+  for (const double d : lobe.density) {
+    if (histogram.samples > 0) expected += d / histogram.density_per_count();
+  }
+  const std::vector<PlaneBar> plane = plane_bars(histogram, lobe, std::max(40.0, expected / 128));
   for (const PlaneBar& b : plane) highest = std::max(highest, b.count * b.density_per_count);
   if (highest <= 0) highest = 1;
 

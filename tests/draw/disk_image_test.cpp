@@ -106,6 +106,20 @@ TEST_P(TreeImages, HalvedMassesAreSeenBelowTheTarget) {
   EXPECT_GT(below, pixels / 20);
 }
 
+TEST(TreeImage, ASlopeTiltsTheLeaf) {
+  const AnyBrdf f = Lambert{};
+  SamplerData data = toy_sampler(f, {DomainKind::projected_disk, true, 0}, 0);
+  const Direction wo = viewer_at(0.5f);
+  const DiskImage flat = bound_image(data, wo, 64);
+  data.exact[0].slope_x[0] = 64;
+  data.one_shot[0].slope_x[0] = -64;
+  const DiskImage tilted = bound_image(data, wo, 64), other = one_shot_image(data, wo, 64);
+  EXPECT_NEAR(flat.at(-0.9, 0.01) / flat.at(0.9, 0.01), 1, 1e-4);
+  EXPECT_NEAR(tilted.at(0.9, 0.01) / flat.at(0.9, 0.01), 1 + 0.5 * 0.9, 0.02);
+  EXPECT_NEAR(tilted.at(-0.9, 0.01) / flat.at(-0.9, 0.01), 1 - 0.5 * 0.9, 0.02);
+  EXPECT_GT(other.at(-0.9, 0.01), 2 * other.at(0.9, 0.01));
+}
+
 INSTANTIATE_TEST_SUITE_P(Domains, TreeImages,
                          testing::Values(DomainKind::projected_disk, DomainKind::equal_area,
                                          DomainKind::half_vector, DomainKind::back_vector,

@@ -92,7 +92,7 @@ TEST(PlaneBars, AreNarrowWhereMuchIsExpectedAndKeepEveryCount) {
 // The largest deviation of the bars from the curve in standard deviations.
 double worst_deviation(const PlaneHistogram& h, const PlaneLobe& lobe) {
   double worst = 0;
-  for (const PlaneBar& b : plane_bars(h, lobe)) {
+  for (const PlaneBar& b : plane_bars(h, lobe, 40)) {
     if (b.expected >= 40) worst = std::max(worst, std::abs(b.count - b.expected) / std::sqrt(b.expected));
   }
   return worst;
@@ -169,6 +169,16 @@ TEST(TreeFigure, CountsLeavesAndNamesTheSlab) {
   const Figure figure = tree_figure(data, wo, log_range(target_image(f, {}, wo, 40)));
   EXPECT_NE(figure.title.find("64 leaves"), figure.title.npos);
   EXPECT_NE(figure.body.find("45° to 90°"), figure.body.npos);
+}
+
+TEST(SlabsFigure, CountsAndDrawsEverySlab) {
+  const SamplerData data = toy_sampler(Lambert{}, {DomainKind::projected_disk, true, 0}, 6);
+  const Figure figure = slabs_figure(data);
+  EXPECT_NE(figure.description.find("exact: 2 slabs, 128 leaves; one-shot: 2 slabs, 128 leaves"),
+            std::string::npos)
+      << figure.description;
+  EXPECT_EQ(occurrences(figure.body, "class=\"fill-1\""), 2U);
+  EXPECT_EQ(occurrences(figure.body, "class=\"fill-2\""), 2U);
 }
 
 TEST(CellBorders, FollowTheDomain) {

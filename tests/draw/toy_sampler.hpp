@@ -58,14 +58,16 @@ inline SamplerData toy_sampler(const AnyBrdf& f, const Domain& domain, int level
     }
     double volume = 0;
     const double margin = 1.1, highest = *std::max_element(most.begin(), most.end());
-    MajorantTree tree{nodes, {}, 0, BoundStatus::estimated};
+    MajorantTree tree;
+    tree.nodes = nodes;
+    tree.slope_x.assign(leaves, 0);
+    tree.slope_y.assign(leaves, 0);
     for (const double m : most) {
       tree.mass.push_back(std::uint32_t(m / highest * 1e9));
       volume += m * margin / double(leaves);
     }
     tree.volume = float(volume);
-    data.one_shot.push_back(
-        {nodes, tree.mass, std::vector<std::int8_t>(leaves), std::vector<std::int8_t>(leaves)});
+    data.one_shot.push_back(DensityTree{tree});
     data.exact.push_back(std::move(tree));
   }
   return data;

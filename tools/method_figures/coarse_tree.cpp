@@ -2,6 +2,7 @@
 #include "coarse_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "reflectree/draw/disk_image.hpp"
 #include "reflectree/sampler/albedo.hpp"
@@ -27,11 +28,19 @@ class Cutter {
     const Split split = fine_.nodes[node_++];
     const bool open = depth > 0 && split != Split::leaf;
     if (depth >= 0) coarse_.nodes.push_back(open ? split : Split::leaf);
-    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0});
+    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0, 0, 0});
     if (split == Split::leaf) {
-      const double bound =
+      const double mean =
           double(fine_.volume) * fine_.mass[leaf_] / total_ / share_of(cells_[leaf_], domain_);
-      coarse_.leaves.back().majorant = std::max(coarse_.leaves.back().majorant, bound);
+      const double gx = fine_.slope_x[leaf_] / 128.0, gy = fine_.slope_y[leaf_] / 128.0;
+      CoarseLeaf& leaf = coarse_.leaves.back();
+      if (depth >= 0) {
+        leaf.majorant = mean;
+        leaf.slope_x = gx;
+        leaf.slope_y = gy;
+      } else {
+        leaf.majorant = std::max(leaf.majorant, mean * (1 + std::abs(gx)) * (1 + std::abs(gy)));
+      }
       ++leaf_;
       return;
     }

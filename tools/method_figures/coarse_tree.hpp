@@ -11,10 +11,16 @@ namespace reflectree::method {
 
 struct CoarseLeaf {
   Cell cell;
-  double share = 0;     // of the square
-  double majorant = 0;  // the largest of the leaves within
-  double integral = 0;  // of T / albedo over the leaf, for one wo
+  double share = 0;                 // of the square
+  double majorant = 0;              // of the leaf; of merged leaves, the largest of their bounds
+  double slope_x = 0, slope_y = 0;  // of the leaf's shape; merged leaves are flat
+  double integral = 0;              // of T / albedo over the leaf, for one wo
   double volume() const { return share * majorant; }
+  double bound(Vec2<float> p) const {
+    const double s = double(2 * (p.x - cell.x0) / (cell.x1 - cell.x0) - 1);
+    const double t = double(2 * (p.y - cell.y0) / (cell.y1 - cell.y0) - 1);
+    return majorant * (1 + slope_x * s) * (1 + slope_y * t);
+  }
 };
 
 struct CoarseTree {

@@ -15,7 +15,9 @@ namespace reflectree::method {
 
 Example make_example() {
   const AnyBrdf f = Plastic{{0.1f, 0.02f, 0.015f}, 0.05f, 0.12f};
-  return {f, build(f), draw::viewer_at(50 * pi / 180)};
+  BuildOptions options;
+  options.domain = Domain{DomainKind::half_vector, true, 0};  // named: figures and text speak of its cells
+  return {f, build(f, options), draw::viewer_at(50 * pi / 180)};
 }
 
 }  // namespace reflectree::method

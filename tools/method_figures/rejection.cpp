@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps 6 and 7: trials under the staircase of bounds, accepted and rejected; and why a rejection starts
+// Steps 6 and 7: trials under the bounds, accepted and rejected; and why a rejection starts
 // again from the leaf choice.
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ Figure rejection_figure(const Example& example) {
   Figure figure{840, 372, "Accepted and rejected", {}, {}};
   figure.body = label(16, 26, "A cut through the square: trials under the bounds", Anchor::start, "head");
   figure.description =
-      "Left: points uniform under a staircase of leaf bounds; those under the target are accepted. Right: "
+      "Left: points uniform under the bounds of leaves; those under the target are accepted. Right: "
       "the "
       "same trials over the disk, dots accepted, crosses rejected.";
 
@@ -47,7 +47,7 @@ Figure rejection_figure(const Example& example) {
     const Vec2<float> p{2 * (float(i) + 0.5f) / (steps + 1) - 1, cut_y};
     x.push_back(double(p.x));
     target.push_back(normalised_target(example, p));
-    bound.push_back(tree.leaves[finder.find(p).index].majorant);
+    bound.push_back(tree.leaves[finder.find(p).index].bound(p));
     highest = std::max(highest, bound.back());
   }
   Frame f;
@@ -56,7 +56,7 @@ Figure rejection_figure(const Example& example) {
   f.x_ticks = ticks(f.x, 4);
   f.y_ticks = ticks(f.y, 5);
   f.x_title = "*x* on the square";
-  f.y_title = "*T* / *a*, and the bound *M* of each leaf";
+  f.y_title = "*T* / *a*, and the bounds of the leaves";
   figure.body += frame(f);
   Pcg32 random(6);
   PathData accepted, rejected;
@@ -87,13 +87,17 @@ Figure rejection_figure(const Example& example) {
     std::size_t i = 0;
     while (i + 1 < tree.leaves.size() && v >= tree.leaves[i].volume()) v -= tree.leaves[i++].volume();
     const CoarseLeaf& leaf = tree.leaves[i];
-    const Vec2<float> p{lerp(to_unit_float(random()), leaf.cell.x0, leaf.cell.x1),
-                        lerp(to_unit_float(random()), leaf.cell.y0, leaf.cell.y1)};
+    const double highest_shape = (1 + std::abs(leaf.slope_x)) * (1 + std::abs(leaf.slope_y));
+    Vec2<float> p;
+    do {  // in proportion to the bound across the leaf
+      p = {lerp(to_unit_float(random()), leaf.cell.x0, leaf.cell.x1),
+           lerp(to_unit_float(random()), leaf.cell.y0, leaf.cell.y1)};
+    } while (to_unit_double(random()) * leaf.majorant * highest_shape >= leaf.bound(p));
     const DomainPoint point = lift(domain, example.wo, p);
     const double side = domain.half && (random() & 1U) ? -1 : 1;
     const double px = cx + radius * double(point.geometry.wi.x),
                  py = cy - side * radius * double(point.geometry.wi.y);
-    if (to_unit_double(random()) * leaf.majorant < normalised_target(example, p)) {
+    if (to_unit_double(random()) * leaf.bound(p) < normalised_target(example, p)) {
       kept.dot(px, py);
     } else {
       cross(dropped, px, py, 2.1);
@@ -109,7 +113,7 @@ Figure rejection_figure(const Example& example) {
 }
 
 Figure restart_figure(const Example& example) {
-  const CoarseTree tree = cut(example, 4);
+  const CoarseTree tree = cut(example, 5);
   double volume = 0, integral = 0, worst = 0;
   for (const CoarseLeaf& leaf : tree.leaves) volume += leaf.volume(), integral += leaf.integral;
   Figure figure{840, 300, "Why a rejection starts again", {}, {}};

@@ -24,7 +24,7 @@ Figure tree_growth_figure(const Example& example) {
   const Axis range{std::max(lowest, highest * 1e-4), highest, 0, 1, true};
   const Axis disk_range = log_range(target_image(example.f, example.data.target, example.wo, 220));
   std::vector<Figure> panels;
-  for (const int depth : {4, 7, 64}) {
+  for (const int depth : {3, 5, 64}) {
     const CoarseTree tree = cut(example, depth);
     double volume = 0;
     for (const CoarseLeaf& leaf : tree.leaves) volume += leaf.volume();
@@ -46,7 +46,7 @@ Figure tree_growth_figure(const Example& example) {
             const Direction folded{wi[i].x, domain.half ? abs(wi[i].y) : wi[i].y, wi[i].z};
             const Vec2<float> p = lower(domain, example.wo, folded);
             const float area = lift(domain, example.wo, p).projected_area;
-            out[i] = area > 0 ? float(tree.leaves[finder.find(p).index].majorant) * albedo / area : 0.f;
+            out[i] = area > 0 ? float(tree.leaves[finder.find(p).index].bound(p)) * albedo / area : 0.f;
           }
         },
         220);

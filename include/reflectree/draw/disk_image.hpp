@@ -64,6 +64,9 @@ class LeafFinder {
   float y0_;
 };
 
+// The shape q of a leaf at a point of it (sampler_data.hpp); its mean over the leaf is 1.
+float leaf_shape(const Tree& tree, const LeafFinder::Leaf& leaf, Vec2<float> p);
+
 // The slab of theta_o in a partition over theta_o alone.
 std::size_t slab_of(const Partition& partition, Direction wo);
 

@@ -47,7 +47,7 @@ struct PlaneBar {
   double density_per_count;
 };
 std::vector<PlaneBar> plane_bars(const PlaneHistogram& histogram, const PlaneLobe& lobe,
-                                 double least_expected = 40);
+                                 double least_expected);
 
 // `albedo` = albedo_at(data.albedo, wo.z).
 Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
