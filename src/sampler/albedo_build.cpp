@@ -244,8 +244,8 @@ void tabulate(const Panel& panel, const std::array<double, 5>& v, double t0, dou
 
 AlbedoTable build_albedo(const Field& field, float relative_error, const Host& host,
                          std::uint64_t* evaluations) {
-  const double cubature_error = 0.3 * double(relative_error),
-               interpolation_error = 0.2 * double(relative_error);
+  const double cubature_error = 0.2 * double(relative_error),
+               interpolation_error = 0.15 * double(relative_error);
   // Panels of at most 7.5 degrees, and octaves towards the horizon.
   std::vector<double> borders;
   for (int i = 0; i < 12; ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);

@@ -103,6 +103,12 @@ DensityTree density_tree(const Slab& slab) {
   return tree;
 }
 
+std::size_t leaf_count(const std::vector<Slab>& slabs) {
+  std::size_t count = 0;
+  for (const Slab& slab : slabs) count += (slab.nodes.size() + 1) / 2;
+  return count;
+}
+
 double volume(const Slab& slab) {
   double sum = 0;
   for (const Node& node : slab.nodes) sum += node.split == Split::leaf ? double(node.leaf.cost) : 0.;
@@ -112,7 +118,7 @@ double volume(const Slab& slab) {
 // Grows, attacks the bounds, and grows again while the raised bounds cost more trials than allowed.
 std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const AlbedoTable& albedo,
                               const BuildOptions& options, const Host& host, BuildReport& report) {
-  constexpr float accepted_overshoot = 1e-7f;
+  constexpr float accepted_overshoot = 2e-7f;
   constexpr int max_passes = 8;
   const float spare = 0.96f;  // of the budget: the attack will use the rest
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
@@ -128,8 +134,10 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
       first_new[s] = slabs[s].nodes.size();
       dear = dear || volume(slabs[s]) > double(options.expected_trials);
     }
-    rules.goal -= 0.04f * (options.expected_trials - 1);
-    if (dear) grow(slabs, field, albedo, rules, host, &report.evaluations);
+    if (dear) {
+      rules.goal -= 0.02f * (options.expected_trials - 1);
+      grow(slabs, field, albedo, rules, host, &report.evaluations);
+    }
     if (!dear && report.overshoot_mass <= accepted_overshoot) break;
   }
   for (const Slab& slab : slabs) report.expected_trials = max(report.expected_trials, float(volume(slab)));

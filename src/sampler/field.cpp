@@ -45,7 +45,6 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
     for (std::size_t i = begin; i < end; ++i) {
       const DomainPoint q = lift(domain, wo_from_cosine(points[i].cos_theta_o), points[i].p);
       out[i] = {0, 0};
-      if (!(q.projected_area > 0)) continue;
       geometry.push_back(q.geometry), area.push_back(q.projected_area), index.push_back(i);
       if (both_sides) {
         ShadingGeometry<float> mirrored = q.geometry;

@@ -73,9 +73,10 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
     const Slab::Landmark& landmark = *visits[v].landmark;
     const Task& task = tasks[visits[v].task];
     const std::size_t i = tasks.size() * grid_points + v;
-    if (landmark.albedo > 0) {
-      note(slabs[task.slab].nodes[task.node].leaf, landmark.theta, i, values[i].upper / landmark.albedo);
-    }
+    Leaf& leaf = slabs[task.slab].nodes[task.node].leaf;
+    const Box box = box_of(leaf.cell, field.domain);
+    leaf.crossed = leaf.crossed || landmark.travel > max(box.width, box.height);
+    if (landmark.albedo > 0) note(leaf, landmark.theta, i, values[i].upper / landmark.albedo);
   }
   host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
@@ -91,8 +92,10 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
       rules.analyse(leaf, grid);
       if (rules.bounds) {
         const Box box = box_of(leaf.cell, field.domain);
-        leaf.share = max(leaf.share, leaf.seen / shape(leaf, box, leaf.seen_at));
-        leaf.cost = area_share(leaf.cell) * leaf.share;
+        const float share = max(leaf.share, leaf.seen / shape(leaf, box, leaf.seen_at));
+        if (leaf.crossed) leaf.theta_cost += area_share(leaf.cell) * (share - leaf.share);
+        leaf.share = share;
+        leaf.cost = area_share(leaf.cell) * share;
       }
     }
   });
@@ -147,11 +150,16 @@ Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const D
     slab.cos_theta_o[k] = cosine_at(0.5f * float(k));
     slab.albedo[k] = albedo_at(table, slab.cos_theta_o[k]);
   }
+  float travel[landmark_count];
+  for (int i = 0; i < landmark_count; ++i) {
+    const Vec2<float> a = landmark(domain, cosine_at(0), i), b = landmark(domain, cosine_at(1), i);
+    travel[i] = max(abs(a.x - b.x), abs(a.y - b.y));
+  }
   for (int step = 0; step <= landmark_steps; ++step) {
     const float t = float(step) / landmark_steps, c = cosine_at(t);
     for (int i = 0; i < landmark_count; ++i) {
       slab.landmarks.push_back(
-          {{c, landmark(domain, c, i)}, albedo_at(table, c), lerp(t, theta_lo, theta_hi)});
+          {{c, landmark(domain, c, i)}, albedo_at(table, c), lerp(t, theta_lo, theta_hi), travel[i]});
     }
   }
   return slab;
@@ -403,7 +411,9 @@ void analyse_one_shot(Leaf& leaf, const Grid& grid) {
   leaf.split_x = rows_are_rougher(m, leaf.cell);
   // A needle between the points of the grid: pretend that it fills 1/16 of the leaf, until the grid sees it.
   if (towers(leaf, highest)) {
-    leaf.cost = area * sqrt(square + sqr(leaf.seen) / 16);
+    const float cost = area * sqrt(square + sqr(leaf.seen) / 16);
+    if (leaf.crossed) leaf.theta_cost += cost - leaf.cost;
+    leaf.cost = cost;
     leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
   }
 }

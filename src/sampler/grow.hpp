@@ -64,6 +64,7 @@ struct Leaf {
   // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
   // has found once is not lost between the points of a finer grid.
   float seen = 0, seen_theta = 0;
+  bool crossed = false;  // a landmark moves through the leaf faster than the slab's three thetas can follow
   Vec2<float> seen_at{};
 };
 
@@ -80,6 +81,7 @@ struct Slab {
   struct Landmark {
     FieldPoint point;
     float albedo, theta;
+    float travel;  // how far it moves along the slab
   };
   std::vector<Landmark> landmarks;
   std::vector<Node> nodes;  // nodes[0] is the root

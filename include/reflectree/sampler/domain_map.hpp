@@ -15,7 +15,7 @@ namespace reflectree {
 // pdf_disk = density per share / projected_area.
 struct DomainPoint {
   ShadingGeometry<float> geometry;
-  float projected_area;  // <= 0: no direction above the surface
+  float projected_area;  // > 0
 };
 
 namespace detail {
@@ -38,6 +38,9 @@ inline float half_vector_extent(float sin_theta_o, float cos_theta_o, Vec2<float
   return 0.5f * one_plus / (1 + sqrt(0.5f * max(1 - sin_psi, 0.f)));
 }
 
+// Rounding may carry the very rim of the square to the horizon or below: it stays just above.
+inline constexpr float min_cos_theta_i = 1e-7f;
+
 // side = -1: wo mirrored about the normal, for retro-reflective lobes.
 inline DomainPoint lift_half_vector(Direction wo, Vec2<float> p, float side) {
   const float k = half_vector_extent(side * wo.x, wo.z, p);
@@ -49,16 +52,15 @@ inline DomainPoint lift_half_vector(Direction wo, Vec2<float> p, float side) {
   const Direction axis{side * wo.x, 0, wo.z};
   const float cos_theta_d = axis.x * wh.x + axis.z * wh.z;
   const Direction wi{2 * cos_theta_d * wh.x - axis.x, 2 * cos_theta_d * wh.y,
-                     2 * cos_theta_d * wh.z - axis.z};
+                     max(2 * cos_theta_d * wh.z - axis.z, min_cos_theta_i)};
   // d(wi) = 4 (wo.wh) d(wh); share of the disk = pi.
-  const float projected_area =
-      wi.z > 0 && cos_theta_d > 0 ? wi.z * 4 * cos_theta_d * 2 * pi * half_vector_k0 * d * d : 0.f;
+  const float projected_area = wi.z * 4 * max(cos_theta_d, min_cos_theta_i) * 2 * pi * half_vector_k0 * d * d;
   if (side < 0) return {shading_geometry(wo, wi), projected_area};
   return {{wo, wi, wh, wo.z, wi.z, wh.z, cos_theta_d}, projected_area};
 }
 
 inline Vec2<float> lower_half_vector(Direction wo, Direction wi, float side) {
-  const Direction wh = normalize(Direction{side * wo.x + wi.x, wi.y, wo.z + wi.z});
+  const Direction wh = normalize(sum_of_directions(Direction{side * wo.x, 0, wo.z}, wi));
   const float s2 = sin2_theta(wh);
   if (!(s2 > 0)) return {};
   const float k = half_vector_extent(side * wo.x, wo.z, {wh.x, wh.y});
@@ -76,12 +78,11 @@ inline DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p) {
     // cos theta_i = v^(1 / (2 - a)) along the radius of the disk, v = 1 - r^2.
     const Vec2<float> d = square_to_disk(p);
     const float r2 = d.x * d.x + d.y * d.y;
-    const float v = max(1 - r2, 0.f), power = 1 / (2 - domain.exponent);
-    const float z = pow(v, power);
+    const float v = max(1 - r2, 1e-7f), power = 1 / (2 - domain.exponent);
+    const float z = max(pow(v, power), detail::min_cos_theta_i);
     const float s = r2 > 0 ? sqrt((1 - z * z) / r2) : 0.f;
     // dz/dv = power z / v; d(solid angle) = dz dphi; d(share) = dv dphi / 2 pi.
-    const float projected_area = v > 0 ? 2 * pi * power * z * z / v : 0.f;
-    return {shading_geometry(wo, Direction{d.x * s, d.y * s, z}), z > 0 ? projected_area : 0.f};
+    return {shading_geometry(wo, Direction{d.x * s, d.y * s, z}), 2 * pi * power * z * z / v};
   }
   const Vec2<float> d = square_to_disk(p);
   switch (domain.kind) {
@@ -90,11 +91,13 @@ inline DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p) {
     case DomainKind::back_vector:
       return detail::lift_half_vector(wo, d, -1);
     case DomainKind::projected_disk: {
-      const Direction wi = disk_to_hemisphere_projected(d);
-      return {shading_geometry(wo, wi), wi.z > 0 ? pi : 0.f};
+      Direction wi = disk_to_hemisphere_projected(d);
+      wi.z = max(wi.z, detail::min_cos_theta_i);
+      return {shading_geometry(wo, wi), pi};
     }
     default: {
-      const Direction wi = disk_to_hemisphere_equal_area(d);
+      Direction wi = disk_to_hemisphere_equal_area(d);
+      wi.z = max(wi.z, detail::min_cos_theta_i);
       return {shading_geometry(wo, wi), 2 * pi * wi.z};
     }
   }

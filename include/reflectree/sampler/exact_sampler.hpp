@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "reflectree/brdf/brdf.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
@@ -33,21 +34,33 @@ class ExactSampler {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
-    const float inverse_albedo = 1 / in.albedo;
     for (int trial = 0; trial < max_trials; ++trial) {
       const Candidate c = propose(slab, in, u);
-      const float ratio = c.target * inverse_albedo;  // T / a
-      const bool accepted = to_unit_double(u()) * double(c.majorant) < double(ratio);
-      stats.trial(accepted, ratio, c.majorant);
-      if (!accepted) continue;
-      // pdf = t cos_i / a, weight = f_cos / pdf = a f / t: per channel, cos_i cancels.
-      const float cos_theta_i = c.point.geometry.cos_theta_i;
-      const float t = c.target / c.point.projected_area;
-      return DirectionSample<Value>{from_incidence(in, c.point.geometry.wi), t * cos_theta_i * inverse_albedo,
-                                    scaled(c.value, in.albedo / t), sample_reflection};
+      if (accept(c, in, u, stats)) return finish(c, in);
     }
     stats.exhausted();
     return std::nullopt;
+  }
+
+  // Up to out.size() samples in one call; returns how many were filled (all, unless trials ran out). The
+  // number wanted is divided among the leaves systematically, one trial each; what was rejected is divided
+  // again from the root, since retrying inside the leaf would be biased. Averages over `out` are unbiased;
+  // the samples are stratified, ordered by leaf within each round, and not independent.
+  template <RandomBits U, class Stats = NoStatistics>
+  std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out, Stats&& stats = {}) const {
+    Incidence in;
+    if (!find_incidence(*packed_, wo, in)) return 0;
+    const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
+    std::size_t filled = 0;
+    for (int round = 0; round < max_trials && filled < out.size(); ++round) {
+      detail::divide(slab, packed_->exact.leaves.data() + slab.first, out.size() - filled, u,
+                     [&](const PackedLeaf& leaf) {
+                       const Candidate c = place(slab, leaf, in, u);
+                       if (accept(c, in, u, stats)) out[filled++] = finish(c, in);
+                     });
+    }
+    if (filled < out.size()) stats.exhausted();
+    return filled;
   }
 
   // One trial. Accepted: weight = sum(V) a f_cos J / min(T, a M); else nullopt, which counts as weight 0.
@@ -59,8 +72,8 @@ class ExactSampler {
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
     const Candidate c = propose(slab, in, u);
+    if (!accept(c, in, u, NoStatistics{})) return std::nullopt;
     const float ratio = c.target / in.albedo;
-    if (!(to_unit_double(u()) * double(c.majorant) < double(ratio))) return std::nullopt;
     const float density = min(ratio, c.majorant) / volume(slab);  // per share of the square
     return DirectionSample<Value>{from_incidence(in, c.point.geometry.wi),
                                   density * c.point.geometry.cos_theta_i / c.point.projected_area,
@@ -100,8 +113,12 @@ class ExactSampler {
 
   template <RandomBits U>
   Candidate propose(const PackedSlab& slab, const Incidence& in, U& u) const {
-    const PackedLeaf& leaf =
-        detail::choose_leaf(slab, packed_->exact.leaves.data() + slab.first, detail::bits64(u));
+    return place(
+        slab, detail::choose_leaf(slab, packed_->exact.leaves.data() + slab.first, detail::bits64(u)), in, u);
+  }
+
+  template <RandomBits U>
+  Candidate place(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in, U& u) const {
     const std::uint32_t ux = u(), uy = u();
     const detail::PointInLeaf at =
         detail::place(slab, leaf, packed_->domain.half, to_unit_float(ux), to_unit_float(uy));
@@ -112,14 +129,24 @@ class ExactSampler {
       c.point.geometry.wi.y = -c.point.geometry.wi.y;
       c.point.geometry.wh.y = -c.point.geometry.wh.y;
     }
-    if (c.point.projected_area > 0) {
-      c.value = eval(f_, c.point.geometry);
-      c.target = packed_->target(c.value) * c.point.projected_area;
-    } else {
-      c.value = Value{};
-      c.target = 0;
-    }
+    c.value = eval(f_, c.point.geometry);
+    c.target = packed_->target(c.value) * c.point.projected_area;
     return c;
+  }
+
+  template <RandomBits U, class Stats>
+  static bool accept(const Candidate& c, const Incidence& in, U& u, Stats&& stats) {
+    const float ratio = c.target / in.albedo;  // T / a
+    const bool accepted = to_unit_double(u()) * double(c.majorant) < double(ratio);
+    stats.trial(accepted, ratio, c.majorant);
+    return accepted;
+  }
+
+  // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
+  static DirectionSample<Value> finish(const Candidate& c, const Incidence& in) {
+    const float t = c.target / c.point.projected_area;
+    return {from_incidence(in, c.point.geometry.wi), t * c.point.geometry.cos_theta_i / in.albedo,
+            scaled(c.value, in.albedo / t), sample_reflection};
   }
 
   F f_;

@@ -72,4 +72,19 @@ inline PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool ha
       slab.unit * float(leaf.mass) * cell.inverse_area * (1 + gx * (2 * tx - 1)) * (1 + gy * (2 * ty - 1))};
 }
 
+// Systematic division: visits n leaves in order, each as often as n equidistant points with a common random
+// offset fall into its share of the mass (n share, rounded up or down).
+template <RandomBits U, class Visit>
+void divide(const PackedSlab& slab, const PackedLeaf* leaves, std::size_t n, U& u, Visit&& visit) {
+  const double total = double(slab.bucket) * double(slab.count), step = total / double(n);
+  const double offset = to_unit_double(u()) * step;
+  double upper = double(leaves[0].mass);
+  std::uint32_t i = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double at = offset + double(k) * step;
+    while (at >= upper && i + 1 < slab.count) upper += double(leaves[++i].mass);
+    visit(leaves[i]);
+  }
+}
+
 }  // namespace reflectree::detail

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "reflectree/brdf/brdf.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
@@ -45,9 +46,20 @@ class OneShotSampler {
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
     const PackedLeaf& leaf =
         detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
-    const std::uint32_t ux = u(), uy = u();
-    return finish(in, detail::place(slab, leaf, packed_->domain.half, to_unit_float(ux), to_unit_float(uy)),
-                  packed_->domain.half && (ux & 1U));
+    return sample_in(slab, leaf, in, u);
+  }
+
+  // out.size() samples in one call, divided among the leaves systematically; returns how many were filled
+  // (all or, for "no sample", none). Stratified, ordered by leaf, not independent; averages are unbiased.
+  template <RandomBits U>
+  std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out) const {
+    Incidence in;
+    if (out.empty() || !find_incidence(*packed_, wo, in)) return 0;
+    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    std::size_t filled = 0;
+    detail::divide(slab, packed_->one_shot.leaves.data() + slab.first, out.size(), u,
+                   [&](const PackedLeaf& leaf) { out[filled++] = sample_in(slab, leaf, in, u); });
+    return filled;
   }
 
   // By monotone descent from two uniforms in [0, 1): stratified and QMC points stay stratified.
@@ -91,32 +103,38 @@ class OneShotSampler {
   }
 
   // Per solid angle, sr^-1; by point location, without evaluating f.
-  float pdf(Direction wo, Direction wi) const { return pdf_disk(wo, wi) * max(wi.z, 0.f); }
-  // Per projected solid angle.
-  float pdf_disk(Direction wo, Direction wi) const {
+  float pdf(Direction wo, Direction wi) const {
     Incidence in;
     if (!(wi.z > 0) || !find_incidence(*packed_, wo, in)) return 0;
     Direction local = to_incidence(in, wi);
     if (packed_->domain.half) local.y = abs(local.y);
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
     const Vec2<float> p = lower(packed_->domain, in.wo, local);
-    const float projected_area = lift(packed_->domain, in.wo, p).projected_area;
-    return projected_area > 0 ? detail::locate(*packed_, slab, p).density / projected_area : 0.f;
+    const DomainPoint point = lift(packed_->domain, in.wo, p);
+    return detail::locate(*packed_, packed_->one_shot.slab_at(in.wo.z), p).density *
+           point.geometry.cos_theta_i / point.projected_area;
   }
+  // Per projected solid angle.
+  float pdf_disk(Direction wo, Direction wi) const { return wi.z > 0 ? pdf(wo, wi) / wi.z : 0.f; }
 
  private:
-  std::optional<DirectionSample<Value>> finish(const Incidence& in, const detail::PointInLeaf& at,
-                                               bool mirrored) const {
+  template <RandomBits U>
+  DirectionSample<Value> sample_in(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in,
+                                   U& u) const {
+    const std::uint32_t ux = u(), uy = u();
+    const bool half = packed_->domain.half;
+    return finish(in, detail::place(slab, leaf, half, to_unit_float(ux), to_unit_float(uy)),
+                  half && (ux & 1U));
+  }
+
+  DirectionSample<Value> finish(const Incidence& in, const detail::PointInLeaf& at, bool mirrored) const {
     DomainPoint point = lift(packed_->domain, in.wo, at.p);
-    if (!(point.projected_area > 0)) return std::nullopt;  // rounding at the very rim
     if (mirrored) {
       point.geometry.wi.y = -point.geometry.wi.y;
       point.geometry.wh.y = -point.geometry.wh.y;
     }
     const float pdf_disk = at.height / point.projected_area;
-    return DirectionSample<Value>{from_incidence(in, point.geometry.wi),
-                                  pdf_disk * point.geometry.cos_theta_i,
-                                  scaled(eval(f_, point.geometry), 1 / pdf_disk), sample_reflection};
+    return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i,
+            scaled(eval(f_, point.geometry), 1 / pdf_disk), sample_reflection};
   }
 
   F f_;
