@@ -115,6 +115,28 @@ std::string section(const ReportMaterial& m, std::size_t index) {
   return element("section", {{"class", "card"}, {"id", anchor(index)}}, out) + "\n";
 }
 
+// Says of chi-square what was measured, and no more.
+std::string summary(const std::vector<ReportMaterial>& materials) {
+  std::size_t tested = 0, rejected = 0;
+  for (const ReportMaterial& m : materials) {
+    tested += m.figures.chi_square.has_value();
+    rejected += m.figures.chi_square && !m.figures.chi_square->passed;
+  }
+  const bool one = materials.size() == 1;
+  std::string out =
+      (one ? "One material, with" : std::to_string(materials.size()) + " materials, each with") +
+      std::string(" a sampler built from nothing but its values.");
+  if (tested == 0) return out;
+  out += " The <i>χ</i>² test ";
+  if (rejected == 0)
+    return out + "holds for " +
+           (tested < materials.size() ? std::to_string(tested)
+            : one                     ? "it"
+                                      : "all") +
+           ".";
+  return out + "rejects " + (one ? "it" : std::to_string(rejected)) + ".";
+}
+
 constexpr const char* how_to_read =
     R"(<section class="card"><div class="head"><h2>How to read the pictures</h2></div><div class="how">
 <p>Each disk holds all directions of light <i>ω</i><sub>i</sub> above the surface, projected straight down: the normal is in the middle, grazing light at the rim. The ring marks the viewer <i>ω</i><sub>o</sub>; the cross is its mirror image, where a shiny surface peaks.</p>
@@ -136,10 +158,7 @@ std::string report_html(const std::vector<ReportMaterial>& materials, const Repo
   out += element("style", {}, report_style + figure_style() + "\n.rt{--paper:transparent}") +
          "\n</head>\n<body>\n";
   out += "<header class=\"top\"><h1>" + escape(meta.title) + "</h1>\n<p class=\"lead\">" +
-         (materials.size() == 1 ? std::string("One material")
-                                : std::to_string(materials.size()) + " materials") +
-         ", each with a sampler built from nothing but its values: exact, proved by <i>χ</i>², "
-         "drawn.</p></header>\n<main>\n";
+         summary(materials) + "</p></header>\n<main>\n";
   out += element("section", {{"class", "card"}, {"aria-label", "All materials"}}, table(materials));
   out += how_to_read;
   for (std::size_t i = 0; i < materials.size(); ++i) out += section(materials[i], i);

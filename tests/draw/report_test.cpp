@@ -58,6 +58,17 @@ TEST(Report, ShowsTheFigures) {
   EXPECT_TRUE(has(page, "<td>–</td>"));  // build seconds were not measured
 }
 
+TEST(Report, ClaimsOfChiSquareWhatWasMeasured) {
+  ReportMaterial rejected = sample_material(), passed = sample_material(), untested = sample_material();
+  passed.figures.chi_square->passed = true;
+  untested.figures.chi_square.reset();
+  EXPECT_TRUE(has(report_html({passed, passed}, {}), "test holds for all."));
+  EXPECT_TRUE(has(report_html({passed, untested}, {}), "test holds for 1."));
+  EXPECT_TRUE(has(report_html({passed, rejected}, {}), "test rejects 1."));
+  EXPECT_TRUE(has(report_html({rejected}, {}), "test rejects it."));
+  EXPECT_FALSE(has(report_html({untested}, {}), "test holds"));
+}
+
 TEST(Report, EveryPictureHasWords) {
   const std::string page = report_html({sample_material()}, {});
   std::size_t pictures = 0, words = 0;

@@ -30,6 +30,7 @@ int main(int count, char** arguments) {
   }
   const std::filesystem::path directory = arguments[1];
   try {
+    std::filesystem::create_directories(directory);
     const method::Example example = method::make_example();
     const std::pair<const char*, draw::Figure> figures[] = {
         {"overview", method::overview_figure(example)},
