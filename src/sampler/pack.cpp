@@ -8,12 +8,20 @@
 namespace reflectree {
 
 CosineLookup::CosineLookup(std::vector<float> borders) : borders_(std::move(borders)) {
-  const std::uint32_t last = (std::bit_cast<std::uint32_t>(1.f) - base_) >> shift;
-  std::size_t i = 0;
-  for (std::uint32_t entry = 0; entry <= last; ++entry) {
-    const float c = std::bit_cast<float>(base_ + (entry << shift));
-    while (i + 2 < borders_.size() && borders_[i + 1] <= c) ++i;
-    guide_.push_back(std::uint16_t(i));
+  borders_.back() = 2;  // so that every search ends
+  // Refine the guide until no entry spans two borders, up to 256 entries an octave.
+  for (shift_ = 19; shift_ > 15;) {
+    --shift_;
+    guide_.clear();
+    std::size_t i = 0, crowded = 0;
+    for (std::uint32_t entry = 0; entry <= (std::bit_cast<std::uint32_t>(1.f) - base_) >> shift_; ++entry) {
+      const float c = std::bit_cast<float>(base_ + (entry << shift_));
+      const std::size_t before = i;
+      while (borders_[i + 1] <= c) ++i;
+      crowded += i > before + 1;
+      guide_.push_back(std::uint16_t(i));
+    }
+    if (crowded == 0) break;
   }
 }
 
@@ -135,7 +143,12 @@ PackedSampler pack(const SamplerData& data) {
   packed.domain = data.domain;
   packed.target = data.target;
   packed.albedo_lookup = CosineLookup(data.albedo.cos_theta_o);
-  packed.albedo = data.albedo.albedo;
+  for (std::size_t i = 0; i + 1 < data.albedo.albedo.size(); ++i) {
+    const double c0 = double(data.albedo.cos_theta_o[i]), c1 = double(data.albedo.cos_theta_o[i + 1]);
+    const double a0 = double(data.albedo.albedo[i]), a1 = double(data.albedo.albedo[i + 1]);
+    const double slope = (a1 - a0) / (c1 - c0);
+    packed.albedo.push_back({float(a0 - slope * c0), float(slope)});
+  }
   packed.exact.lookup = lookup_of(data.exact_partition);
   for (auto tree = data.exact.rbegin(); tree != data.exact.rend(); ++tree) {
     double sum = 0;
@@ -154,7 +167,7 @@ PackedSampler pack(const SamplerData& data) {
 
 std::size_t bytes_of(const PackedSampler& packed) {
   return sizeof packed + bytes_of(packed.exact) + bytes_of(packed.one_shot) + packed.albedo_lookup.bytes() +
-         packed.albedo.size() * sizeof(float);
+         packed.albedo.size() * sizeof(AlbedoPiece);
 }
 
 namespace detail {

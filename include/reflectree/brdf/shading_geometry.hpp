@@ -24,7 +24,7 @@ T sin2_theta(Vec3<T> w) {  // exact near the pole, where 1 - z^2 cancels
 // wo + wi, not normalised. Its rounding shows where wo and wi nearly cancel; (wo + wi).(wo - wi) = 0 for unit
 // vectors, so that what the sum has along the difference is rounding and is taken out.
 template <class T>
-Vec3<T> sum_of_directions(Vec3<T> wo, Vec3<T> wi) {
+REFLECTREE_INLINE Vec3<T> sum_of_directions(Vec3<T> wo, Vec3<T> wi) {
   const Vec3<T> h = wo + wi;
   if constexpr (std::is_floating_point_v<T>) {
     if (dot(wo, wi) < T(0)) {
@@ -37,7 +37,7 @@ Vec3<T> sum_of_directions(Vec3<T> wo, Vec3<T> wi) {
 
 // wo + wi = 0 only when both graze; then the half vector is the normal by convention.
 template <class T>
-ShadingGeometry<T> shading_geometry(Vec3<T> wo, Vec3<T> wi) {
+REFLECTREE_INLINE ShadingGeometry<T> shading_geometry(Vec3<T> wo, Vec3<T> wi) {
   const Vec3<T> h = sum_of_directions(wo, wi);
   const T length2 = dot(h, h);
   const T inverse = T(1) / sqrt(max(length2, T(1e-30)));

@@ -6,23 +6,24 @@
 #include <cmath>
 #include <type_traits>
 
+// The hot path of sampling is one function to the optimiser: a call would pass its structs through memory.
+#if defined(__GNUC__) || defined(__clang__)
+#define REFLECTREE_INLINE [[gnu::always_inline]] inline
+#else
+#define REFLECTREE_INLINE inline
+#endif
+
 namespace reflectree {
 
 template <class T>
-  requires std::is_floating_point_v<T>
-constexpr T select(bool condition, T if_true, T if_false) {
-  return condition ? if_true : if_false;
-}
+requires std::is_floating_point_v<T>
+constexpr T select(bool condition, T if_true, T if_false) { return condition ? if_true : if_false; }
 template <class T>
-  requires std::is_floating_point_v<T>
-constexpr T min(T a, T b) {
-  return b < a ? b : a;
-}
+requires std::is_floating_point_v<T>
+constexpr T min(T a, T b) { return b < a ? b : a; }
 template <class T>
-  requires std::is_floating_point_v<T>
-constexpr T max(T a, T b) {
-  return a < b ? b : a;
-}
+requires std::is_floating_point_v<T>
+constexpr T max(T a, T b) { return a < b ? b : a; }
 template <class T>
 constexpr T clamp(T x, T lo, T hi) {
   return min(max(x, lo), hi);

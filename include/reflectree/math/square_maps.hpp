@@ -13,7 +13,7 @@ namespace reflectree {
 namespace detail {
 // sin(pi t / 4), cos(pi t / 4) for |t| <= 1; relative error 3e-9 before rounding (Lawson fit).
 template <class T>
-Vec2<T> cos_sin_quarter(T t) {
+REFLECTREE_INLINE Vec2<T> cos_sin_quarter(T t) {
   if constexpr (std::is_same_v<T, float>) {
     const float s = t * t;
     return {1.f + s * (-0.308425135f + s * (0.0158543239f + s * (-0.0003259365f + s * 3.52876161e-06f))),
@@ -41,14 +41,14 @@ T quarter_atan(T t) {
 
 // Shirley and Chiu 1997: concentric squares to concentric circles. Area ratio pi / 4 everywhere.
 // The half y >= 0 of the square is the half y >= 0 of the disk.
+// Written without branches: which triangle of the square p lies in is a coin toss for the predictor.
 template <class T>
-Vec2<T> square_to_disk(Vec2<T> p) {
+REFLECTREE_INLINE Vec2<T> square_to_disk(Vec2<T> p) {
   const T ax = abs(p.x), ay = abs(p.y);
-  const bool wide = ax > ay;
-  const T radius = wide ? p.x : p.y;
-  if (radius == T(0)) return {};
-  const Vec2<T> c = detail::cos_sin_quarter((wide ? p.y : p.x) / radius);
-  return wide ? Vec2<T>{radius * c.x, radius * c.y} : Vec2<T>{radius * c.y, radius * c.x};
+  const T radius = ax > ay ? p.x : p.y, across = ax > ay ? p.y : p.x;
+  const Vec2<T> c = detail::cos_sin_quarter(across / (radius == T(0) ? T(1) : radius));
+  const T along = radius * c.x, aside = radius * c.y;
+  return {ax > ay ? along : aside, ax > ay ? aside : along};
 }
 template <class T>
 Vec2<T> disk_to_square(Vec2<T> p) {
@@ -66,7 +66,7 @@ inline constexpr T square_to_disk_jacobian = pi_v<T> / T(4);
 
 // Lambert's azimuthal map: r = sqrt(1 - z). d(solid angle) / d(disk area) = 2.
 template <class T>
-Vec3<T> disk_to_hemisphere_equal_area(Vec2<T> p) {
+REFLECTREE_INLINE Vec3<T> disk_to_hemisphere_equal_area(Vec2<T> p) {
   const T r2 = p.x * p.x + p.y * p.y;
   const T s = sqrt(max(T(2) - r2, T(0)));
   return {p.x * s, p.y * s, max(T(1) - r2, T(0))};
@@ -81,7 +81,7 @@ inline constexpr T disk_to_hemisphere_equal_area_jacobian = T(2);
 
 // Orthographic: dx dy = cos theta d(solid angle). d(solid angle) / d(disk area) = 1 / cos theta.
 template <class T>
-Vec3<T> disk_to_hemisphere_projected(Vec2<T> p) {
+REFLECTREE_INLINE Vec3<T> disk_to_hemisphere_projected(Vec2<T> p) {
   return {p.x, p.y, sqrt(max(T(1) - p.x * p.x - p.y * p.y, T(0)))};
 }
 template <class T>

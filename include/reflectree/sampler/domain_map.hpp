@@ -28,24 +28,30 @@ namespace detail {
 // phi and wo, so that a specular lobe stays put. d(solid angle of wh) / d(disk area) = 2 g'(s).
 inline constexpr float half_vector_k0 = 0.292893219f;
 
-// k for the azimuth of p (any length); 1 + sin psi is written without cancellation.
-inline float half_vector_extent(float sin_theta_o, float cos_theta_o, Vec2<float> p) {
-  const float c2 = sqr(cos_theta_o) * (p.x * p.x + p.y * p.y), sx = sin_theta_o * p.x;
-  const float hypotenuse2 = c2 + sx * sx;
-  if (!(hypotenuse2 > 0)) return half_vector_k0;
-  const float sin_psi = sx / sqrt(hypotenuse2);
-  const float one_plus = sin_psi < 0 ? c2 / (hypotenuse2 * (1 - sin_psi)) : 1 + sin_psi;
-  return 0.5f * one_plus / (1 + sqrt(0.5f * max(1 - sin_psi, 0.f)));
+// With x = p.x / |p| and h = hypot(cos_theta_o, sin_theta_o x): 1 + sin psi = P / h, 1 - sin psi = M / h for
+// P M = cos^2 theta_o, of which only the larger may be found by adding. Then, for s = |p|^2,
+//   g(s) = k0 s d,  g'(s) = k0 d^2,  d = P / (P + (2 k0 (h + sqrt(M h / 2)) - P) s).
+// All is multiplied through by |p|, so that p needs no length.
+struct HalfVectorStar {
+  float p, rim;  // P and 2 k0 (h + sqrt(M h / 2))
+};
+REFLECTREE_INLINE HalfVectorStar half_vector_star(float sin_theta_o, float cos_theta_o, Vec2<float> p) {
+  const float r2 = p.x * p.x + p.y * p.y;
+  const float c2 = sqr(cos_theta_o) * r2, sx = sin_theta_o * p.x;
+  const float h = sqrt(c2 + sx * sx);
+  const float larger = h + abs(sx), smaller = c2 / max(larger, 1e-30f);
+  const float plus = sx < 0 ? smaller : larger, minus = sx < 0 ? larger : smaller;
+  return {plus, 2 * half_vector_k0 * (h + sqrt(0.5f * minus * h))};
 }
 
 // Rounding may carry the very rim of the square to the horizon or below: it stays just above.
 inline constexpr float min_cos_theta_i = 1e-7f;
 
 // side = -1: wo mirrored about the normal, for retro-reflective lobes.
-inline DomainPoint lift_half_vector(Direction wo, Vec2<float> p, float side) {
-  const float k = half_vector_extent(side * wo.x, wo.z, p);
+REFLECTREE_INLINE DomainPoint lift_half_vector(Direction wo, Vec2<float> p, float side) {
+  const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, p);
   const float s = p.x * p.x + p.y * p.y;
-  const float d = 1 / (1 + (half_vector_k0 / k - 1) * s);
+  const float d = s > 0 ? star.p / (star.p + (star.rim - star.p) * s) : 1.f;
   const float g = half_vector_k0 * s * d;
   const float scale = sqrt(max(half_vector_k0 * d * (2 - g), 0.f));  // sin theta_h / r
   const Direction wh{p.x * scale, p.y * scale, 1 - g};
@@ -59,13 +65,14 @@ inline DomainPoint lift_half_vector(Direction wo, Vec2<float> p, float side) {
   return {{wo, wi, wh, wo.z, wi.z, wh.z, cos_theta_d}, projected_area};
 }
 
-inline Vec2<float> lower_half_vector(Direction wo, Direction wi, float side) {
+REFLECTREE_INLINE Vec2<float> lower_half_vector(Direction wo, Direction wi, float side) {
   const Direction wh = normalize(sum_of_directions(Direction{side * wo.x, 0, wo.z}, wi));
   const float s2 = sin2_theta(wh);
   if (!(s2 > 0)) return {};
-  const float k = half_vector_extent(side * wo.x, wo.z, {wh.x, wh.y});
+  const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, {wh.x, wh.y});
   const float g = s2 / (1 + wh.z);  // 1 - cos theta_h
-  const float s = g / (half_vector_k0 - (half_vector_k0 / k - 1) * g);
+  // g = k0 s d solved for s.
+  const float s = star.p * g / (star.p * half_vector_k0 - (star.rim - star.p) * g);
   const float scale = sqrt(clamp(s, 0.f, 1.f) / s2);
   return {wh.x * scale, wh.y * scale};
 }
@@ -73,7 +80,7 @@ inline Vec2<float> lower_half_vector(Direction wo, Direction wi, float side) {
 }  // namespace detail
 
 // wo = (sin theta_o, 0, cos theta_o); p in square coordinates.
-inline DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p) {
+REFLECTREE_INLINE DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p) {
   if (domain.kind == DomainKind::stretched) {
     // cos theta_i = v^(1 / (2 - a)) along the radius of the disk, v = 1 - r^2.
     const Vec2<float> d = square_to_disk(p);
@@ -104,7 +111,7 @@ inline DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p) {
 }
 
 // The inverse of lift: square coordinates of wi (z > 0). With half domains wi.y must be >= 0.
-inline Vec2<float> lower(const Domain& domain, Direction wo, Direction wi) {
+REFLECTREE_INLINE Vec2<float> lower(const Domain& domain, Direction wo, Direction wi) {
   Vec2<float> d;
   switch (domain.kind) {
     case DomainKind::half_vector:

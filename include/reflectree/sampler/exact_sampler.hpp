@@ -112,30 +112,29 @@ class ExactSampler {
   static float volume(const PackedSlab& slab) { return slab.unit * float(slab.bucket) * float(slab.count); }
 
   template <RandomBits U>
-  Candidate propose(const PackedSlab& slab, const Incidence& in, U& u) const {
+  REFLECTREE_INLINE Candidate propose(const PackedSlab& slab, const Incidence& in, U& u) const {
     return place(
         slab, detail::choose_leaf(slab, packed_->exact.leaves.data() + slab.first, detail::bits64(u)), in, u);
   }
 
   template <RandomBits U>
-  Candidate place(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in, U& u) const {
+  REFLECTREE_INLINE Candidate place(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in,
+                                    U& u) const {
     const std::uint32_t ux = u(), uy = u();
     const detail::PointInLeaf at =
         detail::place(slab, leaf, packed_->domain.half, to_unit_float(ux), to_unit_float(uy));
     Candidate c;
     c.point = lift(packed_->domain, in.wo, at.p);
     c.majorant = at.height;
-    if (packed_->domain.half && (ux & 1U)) {  // a bit that the position does not use
-      c.point.geometry.wi.y = -c.point.geometry.wi.y;
-      c.point.geometry.wh.y = -c.point.geometry.wh.y;
-    }
+    if (packed_->domain.half)
+      detail::mirror(c.point.geometry, ux & 1U);  // a bit that the position does not use
     c.value = eval(f_, c.point.geometry);
     c.target = packed_->target(c.value) * c.point.projected_area;
     return c;
   }
 
   template <RandomBits U, class Stats>
-  static bool accept(const Candidate& c, const Incidence& in, U& u, Stats&& stats) {
+  REFLECTREE_INLINE static bool accept(const Candidate& c, const Incidence& in, U& u, Stats&& stats) {
     const float ratio = c.target / in.albedo;  // T / a
     const bool accepted = to_unit_double(u()) * double(c.majorant) < double(ratio);
     stats.trial(accepted, ratio, c.majorant);
@@ -143,7 +142,7 @@ class ExactSampler {
   }
 
   // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
-  static DirectionSample<Value> finish(const Candidate& c, const Incidence& in) {
+  REFLECTREE_INLINE static DirectionSample<Value> finish(const Candidate& c, const Incidence& in) {
     const float t = c.target / c.point.projected_area;
     return {from_incidence(in, c.point.geometry.wi), t * c.point.geometry.cos_theta_i / in.albedo,
             scaled(c.value, in.albedo / t), sample_reflection};

@@ -13,7 +13,7 @@ struct Incidence {
 };
 
 // False is "no sample": wo below or at the horizon, not finite, or albedo 0.
-inline bool find_incidence(const PackedSampler& packed, Direction wo, Incidence& out) {
+REFLECTREE_INLINE bool find_incidence(const PackedSampler& packed, Direction wo, Incidence& out) {
   if (!(wo.z >= min_cos_theta_o && wo.z <= 1.00001f)) return false;
   const float sin_theta = sqrt(wo.x * wo.x + wo.y * wo.y);
   if (!(sin_theta <= 1.00001f)) return false;
@@ -26,10 +26,10 @@ inline bool find_incidence(const PackedSampler& packed, Direction wo, Incidence&
   return out.albedo > 0;
 }
 
-inline Direction from_incidence(const Incidence& in, Direction w) {
+REFLECTREE_INLINE Direction from_incidence(const Incidence& in, Direction w) {
   return {w.x * in.cos_phi - w.y * in.sin_phi, w.x * in.sin_phi + w.y * in.cos_phi, w.z};
 }
-inline Direction to_incidence(const Incidence& in, Direction w) {
+REFLECTREE_INLINE Direction to_incidence(const Incidence& in, Direction w) {
   return {w.x * in.cos_phi + w.y * in.sin_phi, w.y * in.cos_phi - w.x * in.sin_phi, w.z};
 }
 

@@ -2,6 +2,7 @@
 // One leaf at run time: choosing it, a point in it, the shape across it.
 #pragma once
 
+#include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
 
@@ -10,7 +11,7 @@ namespace reflectree::detail {
 struct UnpackedCell {
   float x0, y0, width, height, inverse_area;  // in square coordinates; 1 / share of the square
 };
-inline UnpackedCell unpack(PackedCell cell, bool half) {
+REFLECTREE_INLINE UnpackedCell unpack(PackedCell cell, bool half) {
   const int level_x = int(std::bit_width(unsigned(cell.x))) - 1;  // unsigned in libc++ 14
   const int level_y = int(std::bit_width(unsigned(cell.y))) - 1;
   // 2^-level, exactly, by building the float's exponent.
@@ -25,7 +26,7 @@ inline UnpackedCell unpack(PackedCell cell, bool half) {
 struct Product {
   std::uint64_t high, low;
 };
-inline Product multiply(std::uint64_t a, std::uint64_t b) {
+REFLECTREE_INLINE Product multiply(std::uint64_t a, std::uint64_t b) {
 #ifdef __SIZEOF_INT128__
   __extension__ typedef unsigned __int128 Wide;
   const Wide p = Wide(a) * b;
@@ -39,37 +40,48 @@ inline Product multiply(std::uint64_t a, std::uint64_t b) {
 }
 
 template <RandomBits U>
-std::uint64_t bits64(U& u) {
+REFLECTREE_INLINE std::uint64_t bits64(U& u) {
   const std::uint64_t high = u();
   return (high << 32U) | u();
 }
 
 // A leaf in proportion to its mass, by the alias table (Walker 1977) in integers: no rounding bends it.
-inline const PackedLeaf& choose_leaf(const PackedSlab& slab, const PackedLeaf* leaves, std::uint64_t random) {
+REFLECTREE_INLINE const PackedLeaf& choose_leaf(const PackedSlab& slab, const PackedLeaf* leaves,
+                                                std::uint64_t random) {
   const Product bucket = multiply(random, slab.count);
   const PackedLeaf& leaf = leaves[bucket.high];
-  return multiply(bucket.low, slab.bucket).high < leaf.threshold ? leaf : leaves[leaf.alias];
+  const std::uint64_t own =
+      std::uint64_t(0) - std::uint64_t(multiply(bucket.low, slab.bucket).high < leaf.threshold);
+  return leaves[(bucket.high & own) | (leaf.alias & ~own)];  // a branch would be a coin toss
 }
 
 // The inverse of the CDF of the density (1 + g s) / 2 on [-1, 1], returned as (s + 1) / 2 in [0, 1].
-inline float sample_linear(float slope, float u) {
+REFLECTREE_INLINE float sample_linear(float slope, float u) {
   const float a = 1 - slope, b = 1 + slope;
   return min(2 * u / (a + sqrt(lerp(u, a * a, b * b))), 1.f);
 }
-inline float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
+REFLECTREE_INLINE float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
 
 // A point of a leaf drawn from its shape q, and there majorant * q or density * q: per share of the square.
 struct PointInLeaf {
   Vec2<float> p;
   float height;
 };
-inline PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float ux, float uy) {
+REFLECTREE_INLINE PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float ux,
+                                    float uy) {
   const UnpackedCell cell = unpack(leaf.cell, half);
   const float gx = float(leaf.slope_x) / 128, gy = float(leaf.slope_y) / 128;
   const float tx = sample_linear(gx, ux), ty = sample_linear(gy, uy);
   return {
       {cell.x0 + cell.width * tx, cell.y0 + cell.height * ty},
       slab.unit * float(leaf.mass) * cell.inverse_area * (1 + gx * (2 * tx - 1)) * (1 + gy * (2 * ty - 1))};
+}
+
+// Half squares: the coin that chooses the sign of wi.y, without a branch.
+REFLECTREE_INLINE void mirror(ShadingGeometry<float>& g, bool negative) {
+  const std::uint32_t sign = std::uint32_t(negative) << 31U;
+  g.wi.y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(g.wi.y) ^ sign);
+  g.wh.y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(g.wh.y) ^ sign);
 }
 
 // Systematic division: visits n leaves in order, each as often as n equidistant points with a common random

@@ -118,20 +118,18 @@ class OneShotSampler {
 
  private:
   template <RandomBits U>
-  DirectionSample<Value> sample_in(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in,
-                                   U& u) const {
+  REFLECTREE_INLINE DirectionSample<Value> sample_in(const PackedSlab& slab, const PackedLeaf& leaf,
+                                                     const Incidence& in, U& u) const {
     const std::uint32_t ux = u(), uy = u();
     const bool half = packed_->domain.half;
     return finish(in, detail::place(slab, leaf, half, to_unit_float(ux), to_unit_float(uy)),
                   half && (ux & 1U));
   }
 
-  DirectionSample<Value> finish(const Incidence& in, const detail::PointInLeaf& at, bool mirrored) const {
+  REFLECTREE_INLINE DirectionSample<Value> finish(const Incidence& in, const detail::PointInLeaf& at,
+                                                  bool mirrored) const {
     DomainPoint point = lift(packed_->domain, in.wo, at.p);
-    if (mirrored) {
-      point.geometry.wi.y = -point.geometry.wi.y;
-      point.geometry.wh.y = -point.geometry.wh.y;
-    }
+    detail::mirror(point.geometry, mirrored);
     const float pdf_disk = at.height / point.projected_area;
     return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i,
             scaled(eval(f_, point.geometry), 1 / pdf_disk), sample_reflection};

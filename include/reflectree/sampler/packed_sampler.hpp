@@ -19,10 +19,12 @@ class CosineLookup {
   CosineLookup() = default;
   explicit CosineLookup(std::vector<float> borders);
   const std::vector<float>& borders() const { return borders_; }
-  // i with borders[i] <= c < borders[i + 1], clamped; c in [min_cos_theta_o, 1].
+  // i with borders[i] <= c < borders[i + 1], clamped; c in [min_cos_theta_o, 1]. The guide leaves at most one
+  // step where it can, taken without a branch.
   std::size_t operator()(float c) const {
-    std::size_t i = guide_[(std::bit_cast<std::uint32_t>(c) - base_) >> shift];
-    while (i + 2 < borders_.size() && borders_[i + 1] <= c) ++i;
+    std::size_t i = guide_[(std::bit_cast<std::uint32_t>(c) - base_) >> shift_];
+    i += std::size_t(borders_[i + 1] <= c);
+    while (borders_[i + 1] <= c) ++i;
     return i;
   }
   std::size_t bytes() const {
@@ -30,9 +32,9 @@ class CosineLookup {
   }
 
  private:
-  static constexpr int shift = 18;  // 32 entries an octave
   static constexpr std::uint32_t base_ = std::bit_cast<std::uint32_t>(min_cos_theta_o);
-  std::vector<float> borders_;
+  int shift_ = 18;              // 18: 32 entries an octave
+  std::vector<float> borders_;  // the last one is above 1
   std::vector<std::uint16_t> guide_;
 };
 
@@ -73,17 +75,20 @@ struct PackedForest {
   const PackedSlab& slab_at(float cos_theta_o) const { return slabs[lookup(cos_theta_o)]; }
 };
 
+struct AlbedoPiece {
+  float base, slope;  // albedo = base + slope cos_theta_o
+};
+
 struct PackedSampler {
   Domain domain;
   Target target;
   PackedForest exact, one_shot;
   CosineLookup albedo_lookup;
-  std::vector<float> albedo;
+  std::vector<AlbedoPiece> albedo;
 
   float albedo_at(float cos_theta_o) const {
-    const std::size_t i = albedo_lookup(cos_theta_o);
-    const float lo = albedo_lookup.borders()[i], hi = albedo_lookup.borders()[i + 1];
-    return lerp((cos_theta_o - lo) / (hi - lo), albedo[i], albedo[i + 1]);
+    const AlbedoPiece& piece = albedo[albedo_lookup(cos_theta_o)];
+    return piece.base + piece.slope * cos_theta_o;
   }
 };
 

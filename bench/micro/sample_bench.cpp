@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nanoseconds a direction, each beside the floor: polar cosine-hemisphere sampling with the same generator in
+// the same run. wo comes from a pool of 4096 cosine-distributed directions, a new one for every sample;
+// evaluation and weight are included. Ratios are printed by tools/bench_ratios.py.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "reflectree/brdf/models/ggx.hpp"
+#include "reflectree/math/low_discrepancy.hpp"
+#include "reflectree/sampler/sampler.hpp"
+
+namespace {
+
+using namespace reflectree;
+
+Direction cosine_direction(Pcg32& u) {
+  const float r = sqrt(to_unit_float(u())), phi = 2 * pi * to_unit_float(u());
+  return {r * cos(phi), r * sin(phi), sqrt(max(1 - r * r, 0.f))};
+}
+
+const std::vector<Direction>& pool() {
+  static const std::vector<Direction> directions = [] {
+    std::vector<Direction> w;
+    Pcg32 u(2008);
+    while (w.size() < 4096) {
+      const Direction d = cosine_direction(u);
+      if (d.z > 1e-3f) w.push_back(d);
+    }
+    return w;
+  }();
+  return directions;
+}
+
+const Sampler<Ggx>& ggx(float alpha) {
+  static std::vector<std::pair<float, Sampler<Ggx>>> made;
+  for (const auto& [a, sampler] : made) {
+    if (a == alpha) return sampler;
+  }
+  return made.emplace_back(alpha, make_sampler(Ggx{alpha})).second;
+}
+
+template <class Draw>
+void run(benchmark::State& state, Draw&& draw) {
+  Pcg32 u(1);
+  std::size_t i = 0;
+  float sum = 0;
+  for (auto _ : state) {
+    sum += draw(pool()[i++ & 4095U], u);
+    benchmark::DoNotOptimize(sum);
+  }
+}
+
+void cosine_hemisphere(benchmark::State& state) {
+  run(state, [](Direction, Pcg32& u) {
+    const Direction w = cosine_direction(u);
+    return w.x + w.y + w.z;
+  });
+}
+BENCHMARK(cosine_hemisphere);
+
+template <class Value>
+float gathered(const std::optional<DirectionSample<Value>>& s) {
+  return s ? s->wi.x + s->wi.y + s->wi.z + s->pdf + s->weight.r + s->weight.g + s->weight.b : 0.f;
+}
+
+void exact(benchmark::State& state) {
+  const auto& sampler = ggx(float(state.range(0)) * 1e-3f).exact;
+  run(state, [&](Direction wo, Pcg32& u) { return gathered(sampler.sample(wo, u)); });
+}
+BENCHMARK(exact)->Arg(300)->Arg(100)->Arg(10);
+
+void one_shot_alias(benchmark::State& state) {
+  const auto& sampler = ggx(float(state.range(0)) * 1e-3f).one_shot;
+  run(state, [&](Direction wo, Pcg32& u) { return gathered(sampler.sample(wo, u)); });
+}
+BENCHMARK(one_shot_alias)->Arg(300)->Arg(100)->Arg(10);
+
+void one_shot_monotone(benchmark::State& state) {
+  const auto& sampler = ggx(float(state.range(0)) * 1e-3f).one_shot;
+  run(state, [&](Direction wo, Pcg32& u) {
+    const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
+    return gathered(sampler.sample(wo, u1, u2));
+  });
+}
+BENCHMARK(one_shot_monotone)->Arg(300)->Arg(100)->Arg(10);
+
+void exact_pdf(benchmark::State& state) {
+  const auto& sampler = ggx(0.1f).exact;
+  run(state, [&](Direction wo, Pcg32&) { return sampler.pdf(wo, Direction{-wo.x, -wo.y, wo.z}); });
+}
+BENCHMARK(exact_pdf);
+
+void one_shot_pdf(benchmark::State& state) {
+  const auto& sampler = ggx(0.1f).one_shot;
+  run(state, [&](Direction wo, Pcg32&) { return sampler.pdf(wo, Direction{-wo.x, -wo.y, wo.z}); });
+}
+BENCHMARK(one_shot_pdf);
+
+void evaluation(benchmark::State& state) {
+  const Ggx f{0.1f};
+  run(state, [&](Direction wo, Pcg32&) { return eval(f, wo, Direction{-wo.x, -wo.y, wo.z}).r; });
+}
+BENCHMARK(evaluation);
+
+}  // namespace
+
+BENCHMARK_MAIN();
