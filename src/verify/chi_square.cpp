@@ -117,8 +117,8 @@ CheckResult pearson(const char* name, const Tally& tally, std::span<const double
 
 }  // namespace
 
-Tally draw(const ErasedSampler& sampler, const Bins& bins, const ChiSquareOptions& options,
-           const Host& host) {
+Tally tally_of(const ErasedSampler& sampler, const Bins& bins, const ChiSquareOptions& options,
+               const Host& host) {
   const std::size_t size = std::max<std::size_t>(bins.boxes.size(), 1);
   const std::uint64_t chunks = (options.samples + chunk - 1) / chunk;
   std::vector<Tally> parts(chunks, empty_tally(sampler, size));

@@ -52,7 +52,7 @@ TEST(ChiSquare, PassesExactSamplers) {
     const Direction wo = direction_at(theta, 10);
     const auto pass = [&](const ErasedSampler& sampler, const TargetFunction& f) {
       const Bins bins = equal_mass_bins(f, wo);
-      const Tally tally = draw(sampler, bins, options);
+      const Tally tally = tally_of(sampler, bins, options);
       EXPECT_TRUE(check_counts(tally, bins, options).passed)
           << theta << to_line(check_counts(tally, bins, options));
       EXPECT_TRUE(check_weights(tally, bins, options).passed)
@@ -74,7 +74,7 @@ TEST(ChiSquare, JudgesOneShotSamplersByTheirOwnDensity) {
   const ErasedSampler sampler = erase(loose);
   const Bins bins = equal_mass_bins(target_function(loose.f), wo);
   const auto density = density_masses(sampler, bins);
-  const Tally tally = draw(sampler, bins, options);
+  const Tally tally = tally_of(sampler, bins, options);
   EXPECT_TRUE(check_counts(tally, density, options).passed) << to_line(check_counts(tally, density, options));
   EXPECT_TRUE(check_weights(tally, bins, options).passed) << to_line(check_weights(tally, bins, options));
   EXPECT_TRUE(check_mean_weight(tally, bins, options).passed)
@@ -93,7 +93,7 @@ TEST(ChiSquareTwin, FaultsOfExactSamplersAreRejected) {
   options.tests = 1000;
   const auto rejected = [&](const ErasedSampler& sampler, const TargetFunction& f, Direction wo) {
     const Bins bins = equal_mass_bins(f, wo);
-    return !check_counts(draw(sampler, bins, options), bins, options).passed;
+    return !check_counts(tally_of(sampler, bins, options), bins, options).passed;
   };
   for (const double theta : {0., 45., 85.}) {
     const Direction wo = direction_at(theta);
@@ -129,17 +129,17 @@ TEST(ChiSquareTwin, FaultsOfOneShotSamplersAreRejected) {
   const auto density = density_masses(erase(loose), bins);
   for (const auto& faulty : {bent(erase(loose), 1), bent(erase(loose), 0),
                              lost_support(erase(loose), direction_at(30, 60), 0.99f)}) {
-    const Tally tally = draw(faulty, bins, options);
+    const Tally tally = tally_of(faulty, bins, options);
     EXPECT_FALSE(check_counts(tally, density, options).passed) << faulty.name;
     EXPECT_FALSE(check_weights(tally, bins, options).passed) << faulty.name;
   }
   // A false weight leaves the counts as they are; only the weights tell.
-  const Tally heavy = draw(scaled_weight(erase(loose), 1.02f), bins, options);
+  const Tally heavy = tally_of(scaled_weight(erase(loose), 1.02f), bins, options);
   EXPECT_TRUE(check_counts(heavy, density, options).passed);
   EXPECT_FALSE(check_weights(heavy, bins, options).passed);
   EXPECT_FALSE(check_mean_weight(heavy, bins, options).passed);
   const Tally light =
-      draw(scaled_weight(erase(smooth), 0.999f), equal_mass_bins(target_function(smooth.f), wo));
+      tally_of(scaled_weight(erase(smooth), 0.999f), equal_mass_bins(target_function(smooth.f), wo));
   EXPECT_FALSE(check_mean_weight(light, equal_mass_bins(target_function(smooth.f), wo)).passed);
 }
 
@@ -151,7 +151,7 @@ TEST(ChiSquareTwin, SwappedArgumentsAreRejected) {
   const Bins right = equal_mass_bins(target_function(tilted), wo);
   const TargetFunction f = target_function(tilted);
   const Bins wrong = equal_mass_bins(swapped(f), wo);
-  const Tally a = draw(erase(sampler), right), b = draw(erase(sampler), wrong);
+  const Tally a = tally_of(erase(sampler), right), b = tally_of(erase(sampler), wrong);
   EXPECT_TRUE(check_weights(a, right).passed) << to_line(check_weights(a, right));
   EXPECT_FALSE(check_weights(b, wrong).passed);
 }
@@ -165,7 +165,7 @@ TEST(ChiSquareTwin, DirectionsBelowTheHorizonFail) {
     return drawn;
   };
   const Bins bins = equal_mass_bins(target_function(lambert.f), wo);
-  const Tally tally = draw(s, bins);
+  const Tally tally = tally_of(s, bins);
   EXPECT_GT(tally.invalid, 0u);
   EXPECT_FALSE(check_counts(tally, bins).passed);
   EXPECT_FALSE(check_weights(tally, bins).passed);
@@ -182,7 +182,7 @@ TEST(ChiSquare, PValuesAreUniform) {
     ChiSquareOptions options;
     options.samples = 50'000;
     options.seed = std::uint64_t(run) + 100;
-    const Tally tally = draw(erase(smooth), bins, options);
+    const Tally tally = tally_of(erase(smooth), bins, options);
     counts.push_back(check_counts(tally, density, options).p_value);
     weights.push_back(check_weights(tally, bins, options).p_value);
   }
@@ -206,7 +206,7 @@ TEST(ChiSquare, ResultsDoNotDependOnThreads) {
   EXPECT_EQ(density_masses(sampler, a), density_masses(sampler, b, 1e-3, host));
   ChiSquareOptions options;
   options.samples = 200'001;
-  const Tally s = draw(sampler, a, options), t = draw(sampler, b, options, host);
+  const Tally s = tally_of(sampler, a, options), t = tally_of(sampler, b, options, host);
   EXPECT_EQ(s.count, t.count);
   EXPECT_EQ(s.weight, t.weight);
   EXPECT_EQ(s.weight2, t.weight2);
@@ -219,8 +219,8 @@ TEST(ChiSquare, OfABlackSurfaceWantsNoSample) {
   EXPECT_TRUE(bins.mass.empty());
   ErasedSampler none;
   none.sample = [](Direction, Pcg32&, DrawnDirection&) { return false; };
-  EXPECT_TRUE(check_counts(draw(none, bins), bins).passed);
-  EXPECT_FALSE(check_counts(draw(erase(lambert), bins), bins).passed);
+  EXPECT_TRUE(check_counts(tally_of(none, bins), bins).passed);
+  EXPECT_FALSE(check_counts(tally_of(erase(lambert), bins), bins).passed);
 }
 
 }  // namespace

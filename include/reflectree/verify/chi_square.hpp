@@ -28,8 +28,8 @@ struct Tally {
   std::uint64_t dead = 0;     // weight 0
   std::uint64_t invalid = 0;  // below the horizon, not finite, or not of unit length
 };
-Tally draw(const ErasedSampler& sampler, const Bins& bins, const ChiSquareOptions& options = {},
-           const Host& host = {});
+Tally tally_of(const ErasedSampler& sampler, const Bins& bins, const ChiSquareOptions& options = {},
+               const Host& host = {});
 
 // 1. Exact mode: the counts are as t cos_i. Any invalid direction fails.
 CheckResult check_counts(const Tally& tally, const Bins& bins, const ChiSquareOptions& options = {});
