@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// build: a material's sampler into a file.
+#include <filesystem>
+
+#include "commands.hpp"
+#include "info.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/io/sampler_file.hpp"
+#include "subject.hpp"
+
+namespace reflectree::cli {
+
+namespace {
+
+// Before minutes of work, not after.
+void check_output(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error("no such folder", folder.string(), "make it, or choose another output");
+  }
+  if (fs::is_directory(path, ignored)) throw Error("is a folder", path, "name a file");
+}
+
+}  // namespace
+
+void add_build(CLI::App& app, Context& context, Run& run) {
+  CLI::App* command = app.add_subcommand("build", "Build a material's sampler and save it");
+  struct Options {
+    std::string material, output;
+    BuildChoices choices;
+  };
+  auto o = std::make_shared<Options>();
+  command->add_option("MATERIAL", o->material, "Model, sum, or file (see reflectree --help)")->required();
+  command->add_option("-o,--output", o->output, "The sampler file to write")->type_name("FILE")->required();
+  add_build_choices(*command, o->choices);
+  command->callback([&context, &run, o] {
+    run = [&context, o] {
+      check_output(o->output);
+      if (names_sampler_file(context, o->material)) {
+        throw Error("is a sampler already", o->material, "name a material");
+      }
+      Subject subject = open_subject(context, o->material, o->choices);
+      save_sampler(o->output, subject.data);
+      subject.file_size = std::filesystem::file_size(o->output);
+      show_info(context, "build", subject);
+      context.say("saved " + o->output);
+      return int(exit_success);
+    };
+  });
+}
+
+}  // namespace reflectree::cli

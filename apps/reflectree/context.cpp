@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "context.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace reflectree::cli {
+
+void Context::print(const std::string& text) const { fmt::print("{}", text); }
+
+void Context::print_json(const std::string& command, const Json& result) const {
+  Json whole{{"schema_version", schema_version}, {"command", command}};
+  whole.update(result);
+  // A damaged name must not turn a result into an exception: bytes that are not UTF-8 are replaced.
+  fmt::print("{}\n", whole.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void Context::say(const std::string& line) const {
+  if (!quiet) fmt::print(stderr, "{}\n", line);
+}
+
+void Context::detail(const std::string& line) const {
+  if (verbose) say(line);
+}
+
+std::string Context::locate(const std::string& path) const {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::exists(path, ignored) || data.empty()) return path;
+  const fs::path other = fs::path(data) / path;
+  return fs::path(path).is_relative() && fs::exists(other, ignored) ? other.string() : path;
+}
+
+std::string coloured_verdicts(std::string text) {
+  const char* no_color = std::getenv("NO_COLOR");
+  if ((no_color && *no_color) || isatty(STDOUT_FILENO) != 1) return text;
+  const auto paint = [&text](const std::string& word, const char* code) {
+    const std::string painted = std::string(code) + word + "\x1b[0m";
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += painted.size()) {
+      text.replace(at, word.size(), painted);
+    }
+  };
+  paint("pass", "\x1b[32m");
+  paint("FAIL", "\x1b[1;31m");
+  return text;
+}
+
+}  // namespace reflectree::cli

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// info: the facts of a sampler.
+#include "info.hpp"
+
+#include <algorithm>
+
+#include "commands.hpp"
+
+namespace reflectree::cli {
+
+namespace {
+
+const char* name_of(TargetKind kind) {
+  switch (kind) {
+    case TargetKind::norm:
+      return "norm";
+    case TargetKind::luminance:
+      return "luminance";
+    case TargetKind::maximum:
+      return "maximum";
+    case TargetKind::channel:
+      return "channel";
+  }
+  return "unknown";
+}
+
+std::string target_text(const Target& target) {
+  std::string text = name_of(target.kind);
+  if (target.kind == TargetKind::channel) text += ":" + std::to_string(target.index);
+  return text;
+}
+
+struct Leaves {
+  std::size_t total = 0, largest = 0;
+};
+template <class T>
+Leaves leaves_of(const std::vector<T>& trees) {
+  Leaves leaves;
+  for (const Tree& tree : trees) {
+    leaves.total += tree.mass.size();
+    leaves.largest = std::max(leaves.largest, tree.mass.size());
+  }
+  return leaves;
+}
+
+Json json_of(const Subject& s) {
+  const SamplerData& d = s.data;
+  const auto certified = std::count_if(d.exact.begin(), d.exact.end(), [](const MajorantTree& tree) {
+    return tree.status == BoundStatus::certified;
+  });
+  const auto [low, high] = std::minmax_element(d.albedo.albedo.begin(), d.albedo.albedo.end());
+  Json json{{"material", d.material},
+            {"channels", s.f.channels()},
+            {"target", target_text(d.target)},
+            {"domain", reflectree::name_of(d.domain.kind)},
+            {"half_square", d.domain.half},
+            {"exact_slabs", d.exact.size()},
+            {"exact_leaves", leaves_of(d.exact).total},
+            {"largest_exact_tree", leaves_of(d.exact).largest},
+            {"one_shot_slabs", d.one_shot.size()},
+            {"one_shot_leaves", leaves_of(d.one_shot).total},
+            {"certified_slabs", certified},
+            {"estimated_slabs", std::ptrdiff_t(d.exact.size()) - certified},
+            {"bytes_in_memory", bytes_of(*s.packed)},
+            {"bytes_on_disk", nullptr},
+            {"albedo_minimum", *low},
+            {"albedo_maximum", *high},
+            {"albedo_nodes", d.albedo.albedo.size()},
+            {"albedo_relative_error", d.albedo.relative_error},
+            {"expected_trials", d.report.expected_trials},
+            {"overshoot_mass", d.report.overshoot_mass},
+            {"one_shot_variance", d.report.one_shot_variance},
+            {"asymmetry", d.report.asymmetry},
+            {"evaluations", d.report.evaluations},
+            {"build_seconds", nullptr}};
+  if (s.file_size) json["bytes_on_disk"] = *s.file_size;
+  if (s.build_seconds) json["build_seconds"] = *s.build_seconds;
+  return json;
+}
+
+std::string bounds_text(const Subject& s) {
+  const auto certified =
+      std::count_if(s.data.exact.begin(), s.data.exact.end(),
+                    [](const MajorantTree& tree) { return tree.status == BoundStatus::certified; });
+  const auto estimated = std::ptrdiff_t(s.data.exact.size()) - certified;
+  if (certified == 0) return "estimated: sampled maxima, attacked at build";
+  if (estimated == 0) return "certified: proved";
+  return fmt::format("certified in {} slabs, estimated in {}", certified, estimated);
+}
+
+}  // namespace
+
+void show_info(const Context& context, const std::string& command, const Subject& s) {
+  if (context.json) {
+    context.print_json(command, json_of(s));
+    return;
+  }
+  const SamplerData& d = s.data;
+  const auto line = [&context](const char* name, const std::string& value) {
+    context.print(fmt::format("{:<18} {}\n", name, value));
+  };
+  const Leaves exact = leaves_of(d.exact), one_shot = leaves_of(d.one_shot);
+  const auto [low, high] = std::minmax_element(d.albedo.albedo.begin(), d.albedo.albedo.end());
+  line("material", d.material);
+  line("channels", std::to_string(s.f.channels()));
+  line("target", target_text(d.target));
+  line("domain", std::string(reflectree::name_of(d.domain.kind)) +
+                     (d.domain.half ? ", half a square (mirror symmetry)" : ", whole square"));
+  line("exact", fmt::format("{} slabs of theta_o, {} leaves, at most {} in a slab", d.exact.size(),
+                            exact.total, exact.largest));
+  line("one-shot", fmt::format("{} slabs of theta_o, {} leaves, at most {} in a slab", d.one_shot.size(),
+                               one_shot.total, one_shot.largest));
+  line("bounds", bounds_text(s));
+  line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(*s.packed)) / 1024));
+  if (s.file_size) line("on disk", fmt::format("{:.1f} KiB", double(*s.file_size) / 1024));
+  line("albedo of target", fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.1g}", *low,
+                                       *high, d.albedo.albedo.size(), d.albedo.relative_error));
+  line("expected trials", fmt::format("{:.4g} in the worst slab", d.report.expected_trials));
+  line("overshoot mass",
+       fmt::format("{:.2g} in the worst slab, as the build's attack estimates it", d.report.overshoot_mass));
+  line("one-shot variance", fmt::format("{:.3g} relative, median over slabs", d.report.one_shot_variance));
+  line("asymmetry", fmt::format("{:.2g} between mirror images", d.report.asymmetry));
+  line("evaluations", std::to_string(d.report.evaluations));
+  if (s.build_seconds) line("build", fmt::format("{:.2f} s", *s.build_seconds));
+}
+
+void add_info(CLI::App& app, Context& context, Run& run) {
+  CLI::App* command = app.add_subcommand("info", "Show the facts of a sampler, saved or built on the fly");
+  struct Options {
+    std::string subject;
+    BuildChoices choices;
+  };
+  auto o = std::make_shared<Options>();
+  command->add_option("SAMPLER", o->subject, "A sampler file, or a material")->required();
+  add_build_choices(*command, o->choices);
+  command->callback([&context, &run, o] {
+    run = [&context, o] {
+      show_info(context, "info", open_subject(context, o->subject, o->choices));
+      return int(exit_success);
+    };
+  });
+}
+
+}  // namespace reflectree::cli

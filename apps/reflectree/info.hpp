@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subject.hpp"
+
+namespace reflectree::cli {
+
+// The facts of a sampler on stdout, as lines or as JSON of `command`.
+void show_info(const Context& context, const std::string& command, const Subject& subject);
+
+}  // namespace reflectree::cli

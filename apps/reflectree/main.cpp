@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dispatches to a subcommand and translates exceptions to exit codes, once.
+#include <cstdlib>
+#include <new>
+#include <thread>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "reflectree/error.hpp"
+
+namespace {
+
+using namespace reflectree;
+using namespace reflectree::cli;
+
+constexpr const char* about =
+    "Exact importance sampling of any reflectance function.\n"
+    "\n"
+    "A MATERIAL is a sum of models and files, such as\n"
+    "  ggx:alpha=0.1                         a model ('reflectree list' shows them all)\n"
+    "  '0.3*lambert:rho=0.5 + ggx:alpha=0.1' a weighted sum\n"
+    "  paper_white.bsdf                      a measured file: RGL .bsdf or MERL .binary\n"
+    "  table.csv#name                        a member of a table of fits or networks\n"
+    "A SAMPLER is a file that 'reflectree build' saved.\n";
+
+constexpr const char* footer =
+    "Results go to stdout, words to stderr. Exit codes: 0 success, 1 a check failed, 2 bad input or\n"
+    "usage, 3 an internal fault, 130 interrupted. NO_COLOR is obeyed.";
+
+void add_globals(CLI::App& app, Context& context) {
+  app.add_flag("--json", context.json, "Results as JSON, with a schema_version");
+  app.add_flag("-q,--quiet", context.quiet, "No words on stderr but errors");
+  app.add_flag("-v,--verbose", context.verbose, "More words on stderr");
+  app.add_option("--seed", context.seed, "Seed of all random numbers")->capture_default_str();
+  app.add_option("--threads", context.threads, "Threads; 0: one a core. Results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--data", context.data,
+                 "Folder where measured files are looked for as well (default: REFLECTREE_DATA)")
+      ->type_name("FOLDER");
+}
+
+// The words of CLI11 in the form of every other error: what, where, how.
+int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  std::string where = "reflectree";
+  for (const CLI::App* sub : app.get_subcommands()) where += " " + sub->get_name();
+  std::string what = error.what();
+  for (char& c : what) {
+    if (c == '\n') c = ' ';
+  }
+  fmt::print(stderr, "error: {}: {}; see {} --help\n", where, what, where);
+  return exit_bad_input;
+}
+
+int dispatch(int argc, char** argv) {
+  Context context;
+  if (const char* data = std::getenv("REFLECTREE_DATA")) context.data = data;
+  CLI::App app(about, "reflectree");
+  app.footer(footer);
+  app.set_version_flag("--version", std::string("reflectree ") + REFLECTREE_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  add_globals(app, context);
+  Run run;
+  for (const auto add :
+       {add_list, add_build, add_info, add_sample, add_verify, add_draw, add_bake, add_demo}) {
+    add(app, context, run);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // --help, --version
+  } catch (const CLI::ParseError& error) {
+    return usage_error(app, error);
+  }
+  watch_for_interrupt();
+  return run();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "interrupted\n");
+    return exit_interrupted;
+  } catch (const Error& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return exit_bad_input;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: memory: not enough; free some, or ask for less at once\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: internal fault: {}; please report it with the command\n", error.what());
+  }
+  return exit_internal;
+}

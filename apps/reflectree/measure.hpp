@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figures of a sampler that verify and demo share.
+#pragma once
+
+#include "reflectree/verify/attack.hpp"
+#include "reflectree/verify/bins.hpp"
+#include "reflectree/verify/chi_square.hpp"
+#include "subject.hpp"
+
+namespace reflectree::cli {
+
+// wo in the x-z plane, uniform in theta_o from 0 to 89.9 degrees.
+Direction random_viewer(Pcg32& u);
+// The word for a list of elevations in degrees, each in [0, 90); throws Error.
+void check_theta_o(const std::vector<double>& theta_o_deg);
+
+// The ratio T / (a M) of the function to its bound, anywhere: what an attack maximises.
+RatioFunction bound_ratio(const Subject& subject);
+// The same at the first trial of exact mode for a random wo.
+RatioTrial first_trial_ratio(const Subject& subject);
+// An attack, then trials.
+struct Overshoot {
+  AttackResult attack;
+  OvershootMass mass;
+};
+Overshoot measure_overshoot(const Subject& subject, std::uint64_t trials, std::uint64_t seed,
+                            const Host& host);
+
+// Over random wo, one thread, the function called through AnyBrdf, evaluation and random numbers included.
+struct Speed {
+  double mean_trials = 0;  // of exact mode
+  double exact_ns = 0, one_shot_ns = 0;
+};
+Speed measure_speed(const Subject& subject, std::uint64_t seed);
+
+}  // namespace reflectree::cli

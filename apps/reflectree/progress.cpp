@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace reflectree::cli {
+
+namespace {
+constexpr int bar_width = 30;
+}
+
+Progress::Progress(std::string label)
+    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1), last_(Clock::now()) {}
+
+Progress::~Progress() {
+  if (drawn_) fmt::print(stderr, "\r\x1b[K"), std::fflush(stderr);
+}
+
+void Progress::show(float fraction) {
+  const std::lock_guard lock(mutex_);
+  const auto now = Clock::now();
+  const auto pause = std::chrono::milliseconds(!terminal_ ? 1000 : drawn_ ? 100 : 500);
+  if (now - last_ < pause) return;
+  last_ = now;
+  const float share = std::clamp(fraction, 0.f, 1.f);
+  if (terminal_) {
+    const auto full = std::size_t(share * bar_width);
+    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %\x1b[K", label_, std::string(full, '#'),
+               std::string(bar_width - full, '.'), double(share) * 100);
+    drawn_ = true;
+  } else {
+    fmt::print(stderr, "{}: {:.0f} %\n", label_, double(share) * 100);
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace reflectree::cli

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subject.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/io/material_file.hpp"
+#include "reflectree/io/merl.hpp"
+#include "reflectree/io/sampler_file.hpp"
+
+namespace reflectree::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string find(const Context& context, const std::string& path, const std::string& beside) {
+  std::error_code ignored;
+  if (!beside.empty() && fs::path(path).is_relative() && !fs::exists(path, ignored)) {
+    const fs::path neighbour = fs::path(beside).parent_path() / path;
+    if (fs::exists(neighbour, ignored)) return neighbour.string();
+  }
+  return context.locate(path);
+}
+
+Target parse_target(const std::string& text) {
+  if (text == "norm") return {TargetKind::norm, 0};
+  if (text == "luminance") return {TargetKind::luminance, 0};
+  if (text == "maximum") return {TargetKind::maximum, 0};
+  if (text.rfind("channel:", 0) == 0) {
+    std::string_view rest = std::string_view(text).substr(8);
+    const auto number = take_number(rest);
+    if (number && rest.empty() && *number >= 0 && *number < float(max_channels) &&
+        *number == float(int(*number))) {
+      return {TargetKind::channel, std::uint16_t(*number)};
+    }
+  }
+  throw Error("no target '" + text + "'", "--target", "write norm, luminance, maximum, or channel:K");
+}
+
+std::optional<Domain> parse_domain(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  const std::string_view word = std::string_view(text).substr(0, text.find(':'));
+  for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
+                                DomainKind::back_vector}) {
+    if (text == name_of(kind)) return Domain{kind, true, 0};
+  }
+  if (word == name_of(DomainKind::stretched)) {
+    float exponent = 1.5f;
+    if (word.size() < text.size()) {
+      std::string_view rest = std::string_view(text).substr(word.size() + 1);
+      const auto number = take_number(rest);
+      if (!number || !rest.empty() || !(*number >= 0 && *number < 2)) {
+        throw Error("no exponent in '" + text + "'", "--domain",
+                    "write stretched:A with A from 0 to below 2");
+      }
+      exponent = *number;
+    }
+    return Domain{DomainKind::stretched, true, exponent};
+  }
+  throw Error("no domain '" + text + "'", "--domain",
+              "write auto, projected_disk, equal_area, half_vector, back_vector, or stretched:A");
+}
+
+void check_target(const Target& target, const AnyBrdf& f) {
+  if (target.kind != TargetKind::channel || int(target.index) < f.channels()) return;
+  throw Error(
+      "no channel " + std::to_string(target.index) + ": the material has " + std::to_string(f.channels()),
+      "--target", "channels count from 0");
+}
+
+Subject assemble(const std::string& text, AnyBrdf f, SamplerData data) {
+  auto packed = std::make_shared<const PackedSampler>(pack(data));
+  Sampler<AnyBrdf> sampler{ExactSampler<AnyBrdf>(f, packed), OneShotSampler<AnyBrdf>(f, packed)};
+  return {text, std::move(f), std::move(data), std::move(packed), std::move(sampler), {}, {}};
+}
+
+}  // namespace
+
+void add_build_choices(CLI::App& command, BuildChoices& choices) {
+  const auto mark = [&choices](const std::string&) { choices.given = true; };
+  command.add_option("--trials", choices.trials, "Expected trials of exact mode, for every wo")
+      ->check(CLI::Range(1.02, 64.))
+      ->each(mark)
+      ->capture_default_str();
+  command.add_option("--variance", choices.variance, "Relative variance of the weight, one-shot mode")
+      ->check(CLI::Range(1e-4, 10.))
+      ->each(mark)
+      ->capture_default_str();
+  command.add_option("--target", choices.target, "What is sampled: norm, luminance, maximum, channel:K")
+      ->each(mark)
+      ->capture_default_str();
+  command
+      .add_option("--domain", choices.domain,
+                  "Map of the tree's square: auto, projected_disk, equal_area, half_vector, back_vector, "
+                  "stretched:A")
+      ->each(mark)
+      ->capture_default_str();
+}
+
+BuildOptions build_options(const Context& context, const BuildChoices& choices) {
+  BuildOptions options;
+  options.expected_trials = choices.trials;
+  options.one_shot_variance = choices.variance;
+  options.target = parse_target(choices.target);
+  options.domain = parse_domain(choices.domain);
+  options.seed = context.seed;
+  return options;
+}
+
+Material parse(const Context& context, const std::string& text, const std::string& beside) {
+  return parse_material(text, [&](const std::string& path) {
+    std::error_code ignored;
+    return fs::is_regular_file(find(context, path, beside), ignored);
+  });
+}
+
+AnyBrdf load_material(const Context& context, const Material& material, const std::string& beside) {
+  return make_brdf(material, [&](const std::string& path, const std::string& member) {
+    // Named in texts and errors as the user wrote it, wherever it was found.
+    const std::string found = find(context, path, beside);
+    if (found != path) context.detail(path + ": found as " + found);
+    return read_brdf(read_file(found, max_merl_bytes), path, member);
+  });
+}
+
+bool names_sampler_file(const Context& context, const std::string& text) {
+  std::error_code ignored;
+  const std::string path = context.locate(text);
+  if (!fs::is_regular_file(path, ignored)) return false;
+  std::ifstream in(path, std::ios::binary);
+  Bytes start(8);
+  in.read(reinterpret_cast<char*>(start.data()), std::streamsize(start.size()));
+  return in.gcount() == 8 && is_sampler_file(start);
+}
+
+Subject open_subject(const Context& context, const std::string& text, const BuildChoices& choices) {
+  if (names_sampler_file(context, text)) {
+    if (choices.given) {
+      throw Error("options of building do not apply to a sampler that is built", text,
+                  "leave them out, or name the material");
+    }
+    const std::string path = context.locate(text);
+    SamplerData data = load_sampler(path);
+    AnyBrdf f = load_material(context, parse(context, data.material, path), path);
+    check_identity(data, f);
+    Subject subject = assemble(text, std::move(f), std::move(data));
+    subject.file_size = fs::file_size(path);
+    return subject;
+  }
+  const BuildOptions options = build_options(context, choices);
+  AnyBrdf f = load_material(context, parse(context, text));
+  check_target(options.target, f);
+  const auto start = std::chrono::steady_clock::now();
+  SamplerData data = build(f, options, context.host("building"));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  context.detail(fmt::format("built in {:.2f} s, {} evaluations", took.count(), data.report.evaluations));
+  Subject subject = assemble(text, std::move(f), std::move(data));
+  subject.build_seconds = took.count();
+  return subject;
+}
+
+}  // namespace reflectree::cli
