@@ -98,6 +98,12 @@ void validate(const SamplerData& data) {
   if (!is_theta(data.exact_partition) || !is_theta(data.one_shot_partition)) {
     fail("this version serves one known coordinate, theta_o", "partition of the known coordinates");
   }
+  const auto spans_hemisphere = [](const Partition& p) {
+    return p.coordinates[0].lo == 0 && p.coordinates[0].hi > 1.5707f && p.coordinates[0].hi <= 0.5f * pi;
+  };
+  if (!spans_hemisphere(data.exact_partition) || !spans_hemisphere(data.one_shot_partition)) {
+    fail("theta_o does not span the hemisphere", "partition of the known coordinates");
+  }
   if (slab_count(data.exact_partition) != data.exact.size()) fail("one tree a slab is needed", "exact trees");
   if (slab_count(data.one_shot_partition) != data.one_shot.size())
     fail("one tree a slab is needed", "one-shot trees");

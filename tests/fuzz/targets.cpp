@@ -4,13 +4,17 @@
 #include <cstdlib>
 
 #include "../io/synthetic.hpp"
+#include "../io/synthetic_sampler.hpp"
 #include "reflectree/brdf/material.hpp"
 #include "reflectree/brdf/registry.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/io/checksum.hpp"
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/io/merl.hpp"
 #include "reflectree/io/parameter_table.hpp"
 #include "reflectree/io/rgl.hpp"
+#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/sampler/sampler.hpp"
 
 namespace reflectree::fuzz {
 namespace {
@@ -94,6 +98,32 @@ void run_grammar(ByteView bytes) {
   });
 }
 
+// Behind a right checksum, or nothing past it would ever be reached. What is accepted can be written and
+// sampled from.
+void run_sampler(ByteView bytes) {
+  Bytes mended(bytes.begin(), bytes.end());
+  if (mended.size() >= 4) {
+    mended.resize(mended.size() - 4);
+    append_u32(mended, crc32(mended));
+  }
+  expect_error_or_success([&] {
+    const SamplerData data = decode_sampler(mended, "sampler");
+    require(decode_sampler(encode_sampler(data), "again") == data);
+    const auto packed = std::make_shared<const PackedSampler>(pack(data));
+    const auto f = [](Direction, Direction) { return 0.3f; };
+    const ExactSampler exact(f, packed);
+    const OneShotSampler one_shot(f, packed);
+    Pcg32 u(1);
+    for (int i = 0; i < 20; ++i) {
+      const Direction wo = direction_from_angles(0.08f * float(i), float(i));
+      exact.sample(wo, u);
+      one_shot.sample(wo, u);
+      one_shot.sample(wo, 0.3, 0.9);
+      one_shot.pdf(wo, Direction{0, 0.6f, 0.8f});
+    }
+  });
+}
+
 std::vector<Bytes> rgl_seeds() {
   synthetic::RglRecipe small;
   small.width = small.height = small.colours = small.nodes = 2;
@@ -119,6 +149,11 @@ std::vector<Bytes> material_seeds() {
   for (auto more : {merl_seeds(), table_seeds()}) seeds.insert(seeds.end(), more.begin(), more.end());
   return seeds;
 }
+std::vector<Bytes> sampler_seeds() {
+  SamplerData half = synthetic::sampler_data();
+  half.domain = {DomainKind::half_vector, true, 0};
+  return {encode_sampler(synthetic::sampler_data()), encode_sampler(half)};
+}
 std::vector<Bytes> grammar_seeds() {
   std::vector<Bytes> seeds{
       synthetic::as_bytes("0.3*lambert:rho=0.5 + ggx:alpha=0.1,f0=1/0.8/0.3"),
@@ -134,6 +169,7 @@ std::span<const Target> targets() {
                                {"merl", run_merl, merl_seeds},
                                {"table", run_table, table_seeds},
                                {"material", run_material, material_seeds},
+                               {"sampler", run_sampler, sampler_seeds},
                                {"grammar", run_grammar, grammar_seeds}};
   return all;
 }

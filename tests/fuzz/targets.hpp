@@ -17,7 +17,7 @@ struct Target {
   std::vector<Bytes> (*seeds)();  // small valid inputs, made from formulas
 };
 
-// rgl, merl, table, material, grammar
+// rgl, merl, table, material, sampler, grammar
 std::span<const Target> targets();
 
 }  // namespace reflectree::fuzz
