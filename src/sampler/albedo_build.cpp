@@ -87,15 +87,13 @@ void start(Integral& integral, const Domain& domain) {
       integral.regions.push_back({-1 + (2 * i + 1) * hx, y0 + (2 * j + 1) * hy, hx, hy});
     }
   }
-  // Close in on the landmarks, so that no needle there falls between the points.
-  constexpr double narrow = 1. / 128;
-  for (int k = 0; k < landmark_count; ++k) {
-    const Vec2<float> p = landmark(domain, integral.cos_theta_o, k);
+  // Close in on the landmarks and on the pole, so that no needle there falls between the points.
+  const auto close_in = [&](Vec2<float> p, double narrow_x, double narrow_y) {
     for (std::size_t i = 0; i < integral.regions.size(); ++i) {
       Region& r = integral.regions[i];
       const bool inside = std::abs(double(p.x) - r.x) <= r.hx && std::abs(double(p.y) - r.y) <= r.hy;
-      if (!inside || max(r.hx, r.hy) <= narrow) continue;
-      r.split_x = r.hx >= r.hy;
+      if (!inside || (r.hx <= narrow_x && r.hy <= narrow_y)) continue;
+      r.split_x = r.hx / narrow_x >= r.hy / narrow_y;
       (r.split_x ? r.hx : r.hy) /= 2;
       Region upper = r;
       (r.split_x ? r.x : r.y) -= r.split_x ? r.hx : r.hy;
@@ -103,6 +101,14 @@ void start(Integral& integral, const Domain& domain) {
       integral.regions.push_back(upper);
       --i;  // look at the lower half again
     }
+  };
+  for (int k = 0; k < landmark_count; ++k) {
+    const Vec2<float> p = landmark(domain, integral.cos_theta_o, k);
+    if (p.y != 0) close_in(p, 1. / 128, 1. / 128);
+  }
+  for (int i = 0; i < nx; ++i) close_in({-1 + (2 * float(i) + 1) / float(nx), 1e-6f}, 1, 1. / 2048);
+  if (!domain.half) {
+    for (int i = 0; i < nx; ++i) close_in({-1 + (2 * float(i) + 1) / float(nx), -1e-6f}, 1, 1. / 2048);
   }
 }
 

@@ -123,11 +123,11 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
   const AlbedoTable flat{{min_cos_theta_o, 1}, {1, 1}, 0};
   // A coarser goal, and no slab is halved: what theta_o costs is counted in.
   const float goal = 1 + 2 * (options.expected_trials - 1);
-  GrowthRules rules{goal, 1, 1500, false, true, analyse_exact};
+  GrowthRules rules{goal, 1, 2000, false, true, analyse_exact};
   Domain best;
   float least = 1e30f;
   for (const Domain domain :
-       {Domain{DomainKind::equal_area, half, 0}, Domain{DomainKind::half_vector, half, 0},
+       {Domain{DomainKind::half_vector, half, 0}, Domain{DomainKind::equal_area, half, 0},
         Domain{DomainKind::projected_disk, half, 0}, Domain{DomainKind::back_vector, half, 0},
         Domain{DomainKind::stretched, half, 1.5f}}) {
     std::vector<Slab> slabs;
@@ -153,6 +153,8 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
       price += leaves * missed * missed * narrower;
     }
     if (price < least) least = price, best = domain;
+    // Who needs twice as many leaves in one slab as the best in all has lost.
+    rules.max_leaves = std::size_t(clamp(2 * least, 32.f, 2000.f));
   }
   return best;
 }

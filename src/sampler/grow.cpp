@@ -34,11 +34,29 @@ void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicC
   }
 }
 
-// A landmark inside a leaf.
+// A point inside a leaf beside its grid.
 struct Visit {
   std::size_t task;
-  const Slab::Landmark* landmark;
+  Slab::Landmark at;
 };
+
+// A lobe about the pole may be narrower than the grid of a leaf that touches it: look at every octave of the
+// radius below the leaf.
+void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab, const Box& box) {
+  constexpr int octaves = 9;
+  const bool above = box.y0 == 0, below = box.y0 + box.height == 0;
+  if (!above && !below) return;
+  for (std::size_t k = 0; k < theta_nodes; ++k) {
+    for (int octave = 1; octave <= octaves; ++octave) {
+      for (const float node : lobatto_nodes) {
+        const float y = std::ldexp(box.height, -octave);
+        const Vec2<float> p{box.x0 + 0.5f * box.width * (1 + node), above ? y : -y};
+        const float theta = lerp(0.5f * float(k), slab.theta_lo, slab.theta_hi);
+        visits.push_back({task, {{slab.cos_theta_o[k], p}, slab.albedo[k], theta, 0}});
+      }
+    }
+  }
+}
 
 // Evaluates the tasks in one batch and analyses each leaf.
 void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Field& field,
@@ -55,10 +73,11 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
     const Box box = box_of(slab.nodes[tasks[t].node].leaf.cell, field.domain);
     for (const Slab::Landmark& landmark : slab.landmarks) {
       if (!contains(box, landmark.point.p)) continue;
-      visits.push_back({t, &landmark});
-      points.push_back(landmark.point);
+      visits.push_back({t, landmark});
     }
+    add_octaves(visits, t, slab, box);
   }
+  for (const Visit& visit : visits) points.push_back(visit.at.point);
   std::vector<FieldValue> values(points.size());
   eval_in_parallel(field, host, points, values);
   *evaluations += points.size();
@@ -70,7 +89,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
     if (value > leaf.seen) leaf.seen = value, leaf.seen_theta = theta, leaf.seen_at = points[i].p;
   };
   for (std::size_t v = 0; v < visits.size(); ++v) {
-    const Slab::Landmark& landmark = *visits[v].landmark;
+    const Slab::Landmark& landmark = visits[v].at;
     const Task& task = tasks[visits[v].task];
     const std::size_t i = tasks.size() * grid_points + v;
     Leaf& leaf = slabs[task.slab].nodes[task.node].leaf;
@@ -130,6 +149,11 @@ void split_node(Slab& slab, std::uint32_t index, const Domain& domain) {
 
 // Where one point towers over the grid, the longer side closes in on it.
 bool towers(const Leaf& leaf, float over) { return leaf.seen > 2 * over; }
+bool close_in_along_x(const Leaf& leaf) {
+  // Towards the pole along the radius; elsewhere the longer side.
+  if (abs(leaf.seen_at.y) < 0.3f / float(1U << leaf.cell.level_y)) return false;
+  return leaf.cell.level_x <= leaf.cell.level_y;
+}
 
 bool may_split(Leaf& leaf) {
   if ((leaf.split_x ? leaf.cell.level_x : leaf.cell.level_y) < max_level) return true;
@@ -374,7 +398,7 @@ void analyse_exact(Leaf& leaf, const Grid& grid) {
   leaf.ideal = area * mean;
   leaf.theta_cost = area * (leaf.share - steady);
   leaf.split_x = rows_are_rougher(envelope, leaf.cell);
-  if (towers(leaf, highest)) leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
+  if (towers(leaf, highest)) leaf.split_x = close_in_along_x(leaf);
   leaf.share = max(leaf.share, floor_share);
   leaf.cost = area * leaf.share;
 }
@@ -414,7 +438,7 @@ void analyse_one_shot(Leaf& leaf, const Grid& grid) {
     const float cost = area * sqrt(square + sqr(leaf.seen) / 16);
     if (leaf.crossed) leaf.theta_cost += cost - leaf.cost;
     leaf.cost = cost;
-    leaf.split_x = leaf.cell.level_x <= leaf.cell.level_y;
+    leaf.split_x = close_in_along_x(leaf);
   }
 }
 

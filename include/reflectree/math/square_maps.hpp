@@ -22,6 +22,19 @@ REFLECTREE_INLINE Vec2<T> cos_sin_quarter(T t) {
     return {cos(pi_v<T> / T(4) * t), sin(pi_v<T> / T(4) * t)};
   }
 }
+// cos(pi t / 2), sin(pi t / 2) for |t| <= 1; error 5e-8 before rounding (Lawson fit).
+template <class T>
+REFLECTREE_INLINE Vec2<T> cos_sin_half(T t) {
+  if constexpr (std::is_same_v<T, float>) {
+    const float h = 0.5f * t, s = h * h;
+    return {
+        1.f + s * (-4.93480214f +
+                   s * (4.05870916f + s * (-1.33521206f + s * (0.234937559f - s * 0.0243967166f)))),
+        h * (3.14159264f + s * (-5.16771009f + s * (2.55007766f + s * (-0.598292159f + s * 0.0776594082f))))};
+  } else {
+    return {cos(pi_v<T> / T(2) * t), sin(pi_v<T> / T(2) * t)};
+  }
+}
 // (4 / pi) atan(t) for |t| <= 1; relative error 1e-7.
 template <class T>
 T quarter_atan(T t) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The domain of a tree: a map from a square to the directions wi, for a known wo in the x-z plane.
-//   projected_disk  square -> disk -> hemisphere by projection: T = t (the paper's)
-//   equal_area      square -> disk -> hemisphere, area-preserving: T = t cos_i
-//   half_vector     the same map for wh, then wi = reflect(wo, wh): T = t cos_i 4 (wo.wh)
+// Square coordinates are polar: x in [-1, 1] turns the azimuth, |phi| = pi/2 (1 - x), and |y| in [0, 1] goes
+// from the pole to the rim, so that a lobe about the pole is refined along y alone. y in [-1, 1] with the sign
+// of the azimuth, or, for mirror-symmetric functions, y in [0, 1] with a coin for the sign of wi.y.
+//   projected_disk  y = sin^2 theta_i, equal steps of projected solid angle: T = t (the paper's measure)
+//   equal_area      y = 1 - cos theta_i, equal steps of solid angle: T = t cos_i
+//   half_vector     polar in wh, then wi = reflect(wo, wh): T = t cos_i 4 (wo.wh) times y
 //   back_vector     the same with wo mirrored about the normal: retro-reflective lobes stay put
-//   stretched       square -> hemisphere with cos_i = v^(1/(2-a)): for f ~ cos_i^-a, 1 < a < 2
-// Square coordinates: x in [-1, 1]; y in [-1, 1], or, for mirror-symmetric functions, in [0, 1] with a
-// coin for the sign of wi.y.
+//   stretched       cos theta_i = (1 - y)^(1/(2-a)): for f ~ cos_i^-a, 1 < a < 2
 #pragma once
 
 #include <cstdint>
