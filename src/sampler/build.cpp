@@ -127,7 +127,7 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
   std::vector<std::size_t> first_new(slabs.size(), 0);
   for (int pass = 0; pass < max_passes; ++pass) {
     maximise(slabs, first_new, field, albedo, host, &report.evaluations);
-    const float per_leaf = clamp(1.5e6f / float(leaf_count(slabs)), 60.f, 20000.f);
+    const float per_leaf = clamp(1.5e6f / float(leaf_count(slabs)), 150.f, 20000.f);
     report.overshoot_mass = probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), field,
                                   albedo, host, &report.evaluations);
     bool dear = false;

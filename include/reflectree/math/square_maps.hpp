@@ -26,11 +26,11 @@ REFLECTREE_INLINE Vec2<T> cos_sin_quarter(T t) {
 template <class T>
 REFLECTREE_INLINE Vec2<T> cos_sin_half(T t) {
   if constexpr (std::is_same_v<T, float>) {
-    const float h = 0.5f * t, s = h * h;
+    const float h = 0.5f * t, s = h * h, s2 = s * s;  // Estrin's scheme: short chains
     return {
-        1.f + s * (-4.93480214f +
-                   s * (4.05870916f + s * (-1.33521206f + s * (0.234937559f - s * 0.0243967166f)))),
-        h * (3.14159264f + s * (-5.16771009f + s * (2.55007766f + s * (-0.598292159f + s * 0.0776594082f))))};
+        (1.f - s * 4.93480214f) +
+            s2 * ((4.05870916f - s * 1.33521206f) + s2 * (0.234937559f - s * 0.0243967166f)),
+        h * ((3.14159264f - s * 5.16771009f) + s2 * ((2.55007766f - s * 0.598292159f) + s2 * 0.0776594082f))};
   } else {
     return {cos(pi_v<T> / T(2) * t), sin(pi_v<T> / T(2) * t)};
   }

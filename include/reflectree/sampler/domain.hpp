@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The domain of a tree: a map from a square to the directions wi, for a known wo in the x-z plane.
 // Square coordinates are polar: x in [-1, 1] turns the azimuth, |phi| = pi/2 (1 - x), and |y| in [0, 1] goes
-// from the pole to the rim, so that a lobe about the pole is refined along y alone. y in [-1, 1] with the sign
-// of the azimuth, or, for mirror-symmetric functions, y in [0, 1] with a coin for the sign of wi.y.
+// from the pole to the rim, so that a lobe about the pole is refined along y alone. y in [-1, 1] with the
+// sign of the azimuth, or, for mirror-symmetric functions, y in [0, 1] with a coin for the sign of wi.y.
 //   projected_disk  y = sin^2 theta_i, equal steps of projected solid angle: T = t (the paper's measure)
 //   equal_area      y = 1 - cos theta_i, equal steps of solid angle: T = t cos_i
 //   half_vector     polar in wh, then wi = reflect(wo, wh): T = t cos_i 4 (wo.wh) times y

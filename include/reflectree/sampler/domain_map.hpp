@@ -2,7 +2,8 @@
 // The map of each domain (domain.hpp), with its inverse and its measure. wo lies in the x-z plane.
 #pragma once
 
-#include <optional>
+#include <bit>
+#include <cstdint>
 
 #include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/math/square_maps.hpp"
@@ -21,63 +22,68 @@ struct DomainPoint {
 namespace detail {
 
 // The half vectors wh whose reflection lies above the surface fill, at azimuth phi, the elevations up to
-//   theta_max(phi) = pi/4 + psi/2,  tan psi = tan theta_o cos phi:
-// a region that is a star about the normal. With s = r^2 on the disk,
-//   1 - cos theta_h = g(s) = k0 s / (1 + (k0/k - 1) s),  k = 1 - cos theta_max(phi),  k0 = 1 - cos(pi/4),
-// reaches the rim of the star at s = 1, so that nothing of the square is wasted, while g'(0) = k0 for every
-// phi and wo, so that a specular lobe stays put. d(solid angle of wh) / d(disk area) = 2 g'(s).
-inline constexpr float half_vector_k0 = 0.292893219f;
+//   theta_max(phi) = pi/4 + psi/2,  tan psi = tan theta_o cos phi,
+// a region that is a star about the normal. In slopes tau = tan theta_h, with h = hypot(cos_theta_o,
+// sin_theta_o cos phi), its rim is tau_max = sec psi + tan psi = P / cos_theta_o, P = h + sin_theta_o cos
+// phi. The radius y in [0, 1] of the square runs over it by
+//   tau(y) = y d,  d = P / (P + (cos_theta_o - P) y),  tau' = d^2:
+// it meets the rim at y = 1, so that nothing of the square is wasted, and tau'(0) = 1 for every phi and wo,
+// so that a specular lobe stays put. d(solid angle of wh) = tau cos^3 theta_h dtau dphi.
 
-// With h = hypot(cos_theta_o, sin_theta_o cos phi): 1 + sin psi = P / h, 1 - sin psi = M / h for
-// P M = cos^2 theta_o, of which only the larger may be found by adding. Then
-//   g(s) = k0 s d,  g'(s) = k0 d^2,  d = P / (P + (R - P) s),  R = 2 k0 (h + sqrt(M h / 2)).
+// if_positive or if_negative by the sign bit of s: a branch would be a coin toss.
+REFLECTREE_INLINE float by_sign(float s, float if_positive, float if_negative) {
+  const auto a = std::bit_cast<std::uint32_t>(if_positive), b = std::bit_cast<std::uint32_t>(if_negative);
+  const std::uint32_t negative = std::uint32_t(0) - (std::bit_cast<std::uint32_t>(s) >> 31U);
+  return std::bit_cast<float>(a ^ ((a ^ b) & negative));
+}
+
+// P and cos_theta_o, both multiplied by L = h + |sin_theta_o cos phi|: P L is L^2, or, where P would cancel,
+// cos^2 theta_o.
 struct HalfVectorStar {
-  float p, rim;  // P and R
+  float p, c;
 };
 REFLECTREE_INLINE HalfVectorStar half_vector_star(float sin_theta_o, float cos_theta_o, float cos_phi) {
   const float c2 = sqr(cos_theta_o), sx = sin_theta_o * cos_phi;
-  const float h = sqrt(c2 + sx * sx);
-  const float larger = h + abs(sx), smaller = c2 / larger;
-  const float plus = select(sx < 0, smaller, larger), minus = select(sx < 0, larger, smaller);
-  return {plus, 2 * half_vector_k0 * (h + sqrt(0.5f * minus * h))};
+  const float l = sqrt(c2 + sx * sx) + abs(sx);
+  return {by_sign(sx, l * l, c2), cos_theta_o * l};
 }
 
 // Rounding may carry the very rim of the square to the horizon or below: it stays just above.
 inline constexpr float min_cos_theta_i = 1e-7f;
 
-// azimuth: unit vector; r: radius in the disk; side = -1: wo mirrored about the normal, for retro-reflection.
-REFLECTREE_INLINE DomainPoint lift_half_vector(Direction wo, Vec2<float> azimuth, float r, float side) {
-  r = max(r, 1e-12f);
+// azimuth: unit vector; side = -1: wo mirrored about the normal, for retro-reflective lobes.
+REFLECTREE_INLINE DomainPoint lift_half_vector(Direction wo, Vec2<float> azimuth, float y, float side) {
+  y = max(y, 1e-12f);
   const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, azimuth.x);
-  const float s = r * r;
-  const float d = star.p / (star.p + (star.rim - star.p) * s);
-  const float g = half_vector_k0 * s * d;
-  const float sin_theta_h = r * sqrt(max(half_vector_k0 * d * (2 - g), 0.f));
-  const Direction wh{azimuth.x * sin_theta_h, azimuth.y * sin_theta_h, 1 - g};
+  const float d = star.p / (star.p + (star.c - star.p) * y);
+  const float tau = y * d;
+  // n = (tau azimuth, 1) is parallel to wh: wi = 2 (wo.n) / (n.n) n - wo.
+  const float nn = 1 + tau * tau;
   const Direction axis{side * wo.x, 0, wo.z};
-  const float cos_theta_d = axis.x * wh.x + axis.z * wh.z;
-  const Direction wi{2 * cos_theta_d * wh.x - axis.x, 2 * cos_theta_d * wh.y,
-                     max(2 * cos_theta_d * wh.z - axis.z, min_cos_theta_i)};
-  // d(wi) = 4 (wo.wh) d(wh); d(wh) = 2 g' d(disk area); d(disk area) = 2 pi r d(share).
-  const float projected_area =
-      wi.z * 4 * max(cos_theta_d, min_cos_theta_i) * 4 * pi * half_vector_k0 * d * d * r;
+  const float wo_n = max(axis.x * azimuth.x * tau + axis.z, min_cos_theta_i);
+  const float cos2_theta_h = 1 / nn, twice = 2 * wo_n * cos2_theta_h;
+  const Direction wi{twice * tau * azimuth.x - axis.x, twice * tau * azimuth.y,
+                     max(twice - axis.z, min_cos_theta_i)};
+  // d(wi) = 4 (wo.wh) d(wh); dphi = pi/2 dx, dx dy = 4 d(share).
+  const float projected_area = wi.z * (8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (tau * d * d);
   if (side < 0) return {shading_geometry(wo, wi), projected_area};
-  return {{wo, wi, wh, wo.z, wi.z, wh.z, cos_theta_d}, projected_area};
+  const float cos_theta_h = sqrt(cos2_theta_h);
+  const Direction wh{tau * azimuth.x * cos_theta_h, tau * azimuth.y * cos_theta_h, cos_theta_h};
+  return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
 }
 
 // The half vector of wi, and |y| of its place in the square.
 struct LoweredHalfVector {
   Direction wh;
-  float r;
+  float y;
 };
 REFLECTREE_INLINE LoweredHalfVector lower_half_vector(Direction wo, Direction wi, float side) {
   const Direction wh = normalize(sum_of_directions(Direction{side * wo.x, 0, wo.z}, wi));
-  const float s2 = sin2_theta(wh);
-  if (!(s2 > 0)) return {wh, 0};
-  const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, wh.x / sqrt(s2));
-  const float g = s2 / (1 + wh.z);  // 1 - cos theta_h
-  // g = k0 s d solved for s.
-  return {wh, sqrt(clamp(star.p * g / (star.p * half_vector_k0 - (star.rim - star.p) * g), 0.f, 1.f))};
+  const float sin_theta_h = sqrt(sin2_theta(wh));
+  if (!(sin_theta_h > 0)) return {wh, 0};
+  const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, wh.x / sin_theta_h);
+  const float tau = sin_theta_h / max(wh.z, 1e-12f);
+  return {wh, star.p * tau / (star.p - (star.c - star.p) * tau)};  // tau = y d, solved for y
 }
 
 // x in [-1, 1] of the azimuth of w, |phi| = pi/2 (1 - x).
@@ -127,7 +133,7 @@ REFLECTREE_INLINE Vec2<float> lower(const Domain& domain, Direction wo, Directio
     case DomainKind::back_vector: {
       const auto at = detail::lower_half_vector(wo, wi, domain.kind == DomainKind::half_vector ? 1.f : -1.f);
       turned = at.wh;
-      y = at.r;
+      y = at.y;
       break;
     }
     case DomainKind::projected_disk:

@@ -120,14 +120,12 @@ class ExactSampler {
   template <RandomBits U>
   REFLECTREE_INLINE Candidate place(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in,
                                     U& u) const {
-    const std::uint32_t ux = u(), uy = u();
-    const detail::PointInLeaf at =
-        detail::place(slab, leaf, packed_->domain.half, to_unit_float(ux), to_unit_float(uy));
+    bool coin;
+    const detail::PointInLeaf at = detail::place(slab, leaf, packed_->domain.half, u, coin);
     Candidate c;
     c.point = lift(packed_->domain, in.wo, at.p);
     c.majorant = at.height;
-    if (packed_->domain.half)
-      detail::mirror(c.point.geometry, ux & 1U);  // a bit that the position does not use
+    detail::mirror(c.point.geometry, packed_->domain.half && coin);
     c.value = eval(f_, c.point.geometry);
     c.target = packed_->target(c.value) * c.point.projected_area;
     return c;
@@ -135,9 +133,8 @@ class ExactSampler {
 
   template <RandomBits U, class Stats>
   REFLECTREE_INLINE static bool accept(const Candidate& c, const Incidence& in, U& u, Stats&& stats) {
-    const float ratio = c.target / in.albedo;  // T / a
-    const bool accepted = to_unit_double(u()) * double(c.majorant) < double(ratio);
-    stats.trial(accepted, ratio, c.majorant);
+    const bool accepted = to_unit_double(u()) * double(c.majorant * in.albedo) < double(c.target);
+    stats.trial(accepted, c.target / in.albedo, c.majorant);
     return accepted;
   }
 

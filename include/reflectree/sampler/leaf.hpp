@@ -62,19 +62,47 @@ REFLECTREE_INLINE float sample_linear(float slope, float u) {
 }
 REFLECTREE_INLINE float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
 
-// A point of a leaf drawn from its shape q, and there majorant * q or density * q: per share of the square.
+// A point of a leaf, and there majorant * q or density * q: per share of the square.
 struct PointInLeaf {
   Vec2<float> p;
   float height;
 };
+REFLECTREE_INLINE PointInLeaf point_at(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float tx,
+                                       float ty) {
+  const UnpackedCell cell = unpack(leaf.cell, half);
+  const float gx = float(leaf.slope_x) * (1.f / 64),
+              gy = float(leaf.slope_y) * (1.f / 64);  // twice the slopes
+  return {{cell.x0 + cell.width * tx, cell.y0 + cell.height * ty},
+          slab.unit * float(leaf.mass) * cell.inverse_area * ((1 - 0.5f * gx) + gx * tx) *
+              ((1 - 0.5f * gy) + gy * ty)};
+}
+
+// Drawn from the shape q by its inverse CDF: monotone in both uniforms.
 REFLECTREE_INLINE PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float ux,
                                     float uy) {
-  const UnpackedCell cell = unpack(leaf.cell, half);
-  const float gx = float(leaf.slope_x) / 128, gy = float(leaf.slope_y) / 128;
-  const float tx = sample_linear(gx, ux), ty = sample_linear(gy, uy);
-  return {
-      {cell.x0 + cell.width * tx, cell.y0 + cell.height * ty},
-      slab.unit * float(leaf.mass) * cell.inverse_area * (1 + gx * (2 * tx - 1)) * (1 + gy * (2 * ty - 1))};
+  return point_at(slab, leaf, half, sample_linear(float(leaf.slope_x) / 128, ux),
+                  sample_linear(float(leaf.slope_y) / 128, uy));
+}
+
+// Drawn from 1 + g s, g = slope / 128, without root or division: with probability |g| the larger (or, for
+// g < 0, the smaller) of two uniforms, else the first. The probability is exact in 7 bits.
+REFLECTREE_INLINE float sample_linear(std::int8_t slope, std::uint32_t first, std::uint32_t second) {
+  // In integers, whose minima, maxima and selections compile to no branch.
+  const std::uint32_t a = first >> 8U, b = second >> 8U;
+  const std::uint32_t low = a < b ? a : b, high = a ^ b ^ low;
+  const std::uint32_t falling = std::uint32_t(0) - std::uint32_t(slope < 0);
+  const std::uint32_t other = high ^ ((high ^ low) & falling);
+  const std::uint32_t mixed =
+      std::uint32_t(0) - std::uint32_t(int(first & 127U) < (slope < 0 ? -int(slope) : int(slope)));
+  return float(a ^ ((a ^ other) & mixed)) * 0x1p-24f;
+}
+// The same point from random bits; `coin` is a bit that the point does not use.
+template <RandomBits U>
+REFLECTREE_INLINE PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, U& u,
+                                    bool& coin) {
+  const std::uint32_t x0 = u(), x1 = u(), y0 = u(), y1 = u();
+  coin = x1 & 1U;
+  return point_at(slab, leaf, half, sample_linear(leaf.slope_x, x0, x1), sample_linear(leaf.slope_y, y0, y1));
 }
 
 // Half squares: the coin that chooses the sign of wi.y, without a branch.

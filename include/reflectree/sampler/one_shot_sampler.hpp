@@ -38,7 +38,7 @@ class OneShotSampler {
   const F& brdf() const { return f_; }
   const PackedSampler& packed() const { return *packed_; }
 
-  // By alias table, from 128 random bits.
+  // By alias table, from 192 random bits.
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u) const {
     Incidence in;
@@ -120,19 +120,19 @@ class OneShotSampler {
   template <RandomBits U>
   REFLECTREE_INLINE DirectionSample<Value> sample_in(const PackedSlab& slab, const PackedLeaf& leaf,
                                                      const Incidence& in, U& u) const {
-    const std::uint32_t ux = u(), uy = u();
     const bool half = packed_->domain.half;
-    return finish(in, detail::place(slab, leaf, half, to_unit_float(ux), to_unit_float(uy)),
-                  half && (ux & 1U));
+    bool coin;
+    const detail::PointInLeaf at = detail::place(slab, leaf, half, u, coin);
+    return finish(in, at, half && coin);
   }
 
   REFLECTREE_INLINE DirectionSample<Value> finish(const Incidence& in, const detail::PointInLeaf& at,
                                                   bool mirrored) const {
     DomainPoint point = lift(packed_->domain, in.wo, at.p);
     detail::mirror(point.geometry, mirrored);
-    const float pdf_disk = at.height / point.projected_area;
+    const float pdf_disk = at.height / point.projected_area, inverse = point.projected_area / at.height;
     return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i,
-            scaled(eval(f_, point.geometry), 1 / pdf_disk), sample_reflection};
+            scaled(eval(f_, point.geometry), inverse), sample_reflection};
   }
 
   F f_;
