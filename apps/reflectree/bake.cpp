@@ -41,10 +41,15 @@ void add_bake(CLI::App& app, Context& context, Run& run) {
     bool whole = false;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "Model, sum, or file (see reflectree --help)")->required();
+  command->add_option("MATERIAL", o->material, "A model, a sum, or a file (see reflectree --help)")
+      ->type_name("")
+      ->required();
   command->add_option("-o,--output", o->output, "The MERL file to write")->type_name("FILE")->required();
   command->add_flag("--non-reciprocal", o->whole,
                     "360 cells of phi_d, for materials with f(wo, wi) != f(wi, wo); few readers know it");
+  command->footer(
+      "Example:\n"
+      "  reflectree bake plastic:alpha=0.2 -o plastic.binary");
   command->callback([&context, &run, o] {
     run = [&context, o] { return run_bake(context, o->material, o->output, o->whole); };
   });

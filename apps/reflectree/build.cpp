@@ -32,9 +32,16 @@ void add_build(CLI::App& app, Context& context, Run& run) {
     BuildChoices choices;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "Model, sum, or file (see reflectree --help)")->required();
+  command->add_option("MATERIAL", o->material, "A model, a sum, or a file (see reflectree --help)")
+      ->type_name("")
+      ->required();
   command->add_option("-o,--output", o->output, "The sampler file to write")->type_name("FILE")->required();
   add_build_choices(*command, o->choices);
+  command->footer(
+      "Examples:\n"
+      "  reflectree build ggx:alpha=0.1 -o gold.rfl\n"
+      "  reflectree build paper_white.bsdf -o paper.rfl --trials 1.1\n"
+      "The file names its material; keep a measured file beside it, or in the folder of --data.");
   command->callback([&context, &run, o] {
     run = [&context, o] {
       check_output(o->output);

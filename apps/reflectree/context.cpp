@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "reflectree/brdf/number_text.hpp"
+
 namespace reflectree::cli {
 
 void Context::print(const std::string& text) const { fmt::print("{}", text); }
@@ -18,7 +20,9 @@ void Context::print_json(const std::string& command, const Json& result) const {
 }
 
 void Context::say(const std::string& line) const {
-  if (!quiet) fmt::print(stderr, "{}\n", line);
+  if (quiet) return;
+  std::fflush(stdout);  // a terminal shows both, in order
+  fmt::print(stderr, "{}\n", line);
 }
 
 void Context::detail(const std::string& line) const {
@@ -32,6 +36,8 @@ std::string Context::locate(const std::string& path) const {
   const fs::path other = fs::path(data) / path;
   return fs::path(path).is_relative() && fs::exists(other, ignored) ? other.string() : path;
 }
+
+double shortest(float x) { return std::strtod(shortest_text(x).c_str(), nullptr); }
 
 std::string coloured_verdicts(std::string text) {
   const char* no_color = std::getenv("NO_COLOR");

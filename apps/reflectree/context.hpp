@@ -44,6 +44,9 @@ struct Context {
   Host host(const std::string& label) const;
 };
 
+// The double that prints with as few digits as the float needs.
+double shortest(float x);
+
 // "pass" and "FAIL" in colour on a terminal, unless NO_COLOR is set.
 std::string coloured_verdicts(std::string text);
 

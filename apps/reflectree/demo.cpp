@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// demo: the main job on a few materials: build, prove, measure, draw; a table and a page.
+// demo: the main job on a few materials: build, save, prove, measure, draw; a table and a page.
+#include "demo.hpp"
+
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <span>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "measure.hpp"
 #include "pictures.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/io/sampler_file.hpp"
-#include "table.hpp"
 
 namespace reflectree::cli {
 
@@ -22,24 +22,18 @@ namespace {
 constexpr const char* built_in[] = {"lambert",       "oren_nayar",   "ggx:alpha=0.5",
                                     "ggx:alpha=0.1", "plastic",      "retro_reflector",
                                     "baked_matt",    "baked_glossy", "baked_retro"};
-// From matt to metallic, where REFLECTREE_DATA has them.
+// From matt to metallic; those that the data folder has.
 constexpr const char* measured[] = {"rgl/paper_white_rgb.bsdf", "rgl/satin_purple_rgb.bsdf",
                                     "rgl/vch_golden_yellow_rgb.bsdf", "rgl/irid_flake_paint1_rgb.bsdf",
                                     "rgl/chm_mint_rgb.bsdf"};
 
 constexpr std::uint64_t chi_square_samples = 1'000'000;
-constexpr std::uint64_t overshoot_trials = 2'000'000;
+constexpr std::uint64_t overshoot_trials = 5'000'000;
 constexpr std::size_t drawn_samples = 150'000;
 const std::vector<double> view_deg{15, 45, 75};
+constexpr std::size_t tests_a_view = 2;
 
-struct Outcome {
-  std::string name;
-  draw::ReportMaterial report;
-  Overshoot overshoot;
-  std::vector<CheckResult> checks;
-};
-
-// chi-square of both modes at every view; the relative variance of one-shot mode, the worst view.
+// Chi-square of both modes at every view; relative variance of one-shot mode, the worst view.
 void prove(const Subject& subject, int tests, const Context& context, const Host& host, Outcome& outcome) {
   ChiSquareOptions options;
   options.samples = chi_square_samples;
@@ -61,92 +55,136 @@ void prove(const Subject& subject, int tests, const Context& context, const Host
       ++verdict.tests;
       outcome.checks.push_back(std::move(check));
     }
+    host.progress(float(verdict.tests) / float(2 * view_deg.size() + 1));
   }
   outcome.report.figures.chi_square = verdict;
   outcome.report.figures.relative_variance = variance;
 }
 
+// "ggx:alpha=0.1" -> "ggx_alpha_0.1"; "folder/paper.bsdf" -> "paper".
+std::string file_name(const Material& material, const std::string& text) {
+  const bool is_file = material.terms.size() == 1 && !material.terms[0].path.empty();
+  std::string name = text;
+  if (is_file) {
+    name = fs::path(material.terms[0].path).stem().string();
+    if (!material.terms[0].member.empty()) name += "_" + material.terms[0].member;
+  }
+  for (char& c : name) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
+    if (!plain) c = '_';
+  }
+  return name.substr(0, 100);
+}
+
+std::string origin(const Material& material) {
+  if (material.terms.size() != 1) return "weighted sum";
+  const MaterialTerm& term = material.terms[0];
+  if (term.model.empty()) return "from the file " + term.path;
+  const ModelInfo* model = find_model(term.model);
+  return model ? std::string(model->summary) + ". " + std::string(model->source) : "";
+}
+
+// Written, read back, and compared.
+void save(const Subject& subject, const std::string& path) {
+  save_sampler(path, subject.data);
+  if (load_sampler(path) == subject.data) return;
+  throw std::logic_error("a saved sampler reads back differently: " + path);
+}
+
 Outcome run_material(const std::string& text, int tests, const std::string& folder, const Context& context) {
   const Subject subject = open_subject(context, text, {});
-  const Host host = context.host("proving");
+  const Material material = parse(context, subject.data.material);
   Outcome outcome;
-  outcome.name = text;
+  outcome.text = text;
+  outcome.name = file_name(material, text);
+  outcome.saved = (fs::path(folder) / (outcome.name + ".rfl")).string();
+  save(subject, outcome.saved);
+  const Host host = context.host("proving");
   outcome.report = draw_material(subject, view_deg, drawn_samples, context.seed);
-  draw::ReportFigures& figures = outcome.report.figures;
+  outcome.report.name = text;
+  outcome.report.origin = origin(material);
   prove(subject, tests, context, host, outcome);
   outcome.overshoot = measure_overshoot(subject, overshoot_trials, context.seed, host);
+  outcome.speed = measure_speed(subject, context.seed);
+  draw::ReportFigures& figures = outcome.report.figures;
   figures.overshoot_mass = outcome.overshoot.mass.estimate;
-  const Speed speed = measure_speed(subject, context.seed);
-  figures.mean_trials = speed.mean_trials;
-  figures.exact_ns = speed.exact_ns, figures.one_shot_ns = speed.one_shot_ns;
-  (void)folder;
+  figures.mean_trials = outcome.speed.mean_trials;
+  figures.exact_ns = outcome.speed.exact_ns;
+  figures.one_shot_ns = outcome.speed.one_shot_ns;
   return outcome;
 }
 
-Table table_of(const std::vector<Outcome>& outcomes) {
-  Table table{{"material", "domain", "slabs", "leaves", "KiB", "build s", "trials", "chi-square", "overshoot",
-               "(at most)", "exact ns", "one-shot ns", "rel. variance"},
-              {}};
-  for (const Outcome& o : outcomes) {
-    const draw::ReportFigures& f = o.report.figures;
-    table.rows.push_back(
-        {o.name, f.domain, fmt::format("{}+{}", f.exact_slabs, f.one_shot_slabs),
-         fmt::format("{}+{}", f.exact_leaves, f.one_shot_leaves), fmt::format("{:.0f}", f.kib.value_or(0)),
-         f.build_seconds ? fmt::format("{:.2f}", *f.build_seconds) : "-",
-         fmt::format("{:.3f}", *f.mean_trials), f.chi_square->passed ? "pass" : "FAIL",
-         fmt::format("{:.1g}", o.overshoot.mass.estimate), fmt::format("{:.1g}", o.overshoot.mass.upper),
-         fmt::format("{:.0f}", *f.exact_ns), fmt::format("{:.0f}", *f.one_shot_ns),
-         fmt::format("{:.4f}", *f.relative_variance)});
+std::vector<std::string> default_materials(const Context& context) {
+  std::vector<std::string> materials(std::begin(built_in), std::end(built_in));
+  std::error_code ignored;
+  for (const char* path : measured) {
+    if (fs::exists(context.locate(path), ignored)) materials.emplace_back(path);
   }
-  return table;
+  if (materials.size() == std::size(built_in)) {
+    context.say("No measured files: name some, or set REFLECTREE_DATA to a folder with rgl/*.bsdf");
+  }
+  return materials;
 }
 
 int run_demo(const Context& context, std::vector<std::string> materials, const std::string& folder) {
-  if (materials.empty()) {
-    materials.assign(std::begin(built_in), std::end(built_in));
-    for (const char* path : measured) {
-      if (context.locate(path) != path || fs::exists(path)) materials.emplace_back(path);
-    }
+  if (materials.empty()) materials = default_materials(context);
+  for (const std::string& text : materials) {  // a typing error shows now, not after minutes
+    if (!names_sampler_file(context, text)) load_material(context, parse(context, text));
   }
   make_folder(folder);
+  const auto start = std::chrono::steady_clock::now();
   std::vector<Outcome> outcomes;
-  const int tests = int(materials.size() * view_deg.size() * 2);
+  const int tests = int(materials.size() * view_deg.size() * tests_a_view);
   for (const std::string& text : materials) {
     if (interrupted()) throw Cancelled();
     context.say(fmt::format("{}/{}  {}", outcomes.size() + 1, materials.size(), text));
-    const auto start = std::chrono::steady_clock::now();
     outcomes.push_back(run_material(text, tests, folder, context));
-    context.detail(fmt::format(
-        "  {:.1f} s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
-    for (const CheckResult& c : outcomes.back().checks) context.detail("  " + to_line(c));
+    for (const CheckResult& check : outcomes.back().checks) {
+      if (context.verbose || !check.passed) context.say("  " + to_line(check));
+    }
   }
   draw::ReportMeta meta;
   meta.command = "reflectree demo";
   meta.version = REFLECTREE_VERSION;
-  const std::string page = (fs::path(folder) / "index.html").string();
   std::vector<draw::ReportMaterial> reports;
-  for (Outcome& o : outcomes) reports.push_back(o.report);
+  for (const Outcome& outcome : outcomes) reports.push_back(outcome.report);
+  const std::string page = (fs::path(folder) / "index.html").string();
   write_file_atomically(page, draw::report_html(reports, meta));
-  context.print(coloured_verdicts(to_text(table_of(outcomes))));
-  context.print(page + "\n");
-  return exit_success;
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  show_outcomes(context, outcomes, page, took.count());
+  const bool passed =
+      std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return all_passed(o.checks); });
+  return passed ? exit_success : exit_check_failed;
 }
 
 }  // namespace
 
 void add_demo(CLI::App& app, Context& context, Run& run) {
   CLI::App* command =
-      app.add_subcommand("demo", "Show it all: build, prove, measure and draw a few materials");
+      app.add_subcommand("demo", "Show it all: build, save, prove, measure and draw a few materials");
   struct Options {
     std::vector<std::string> materials;
     std::string output = "reflectree-demo";
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->materials,
-                      "Materials or files; nothing: the built-in choice, and RGL files of the data folder");
-  command->add_option("-o,--output", o->output, "The folder to write")
+  command
+      ->add_option(
+          "MATERIAL", o->materials,
+          "Materials or files; nothing: models, tables made on the spot, and RGL files of the data folder")
+      ->type_name("");
+  command->add_option("-o,--output", o->output, "The folder to write: a page, and every sampler")
       ->type_name("FOLDER")
       ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  reflectree demo\n"
+      "  reflectree demo ggx:alpha=0.05 my_measurement.bsdf -o shown\n"
+      "The table: slabs, leaves of exact + one-shot mode; trials: mean of exact mode; overshoot: the share "
+      "of\n"
+      "the target above its bounds with its upper 95 % bound; ns: a sample, with random numbers and "
+      "evaluation;\n"
+      "variance: of one-shot weights, relative, the worst of the angles drawn.");
   command->callback(
       [&context, &run, o] { run = [&context, o] { return run_demo(context, o->materials, o->output); }; });
 }

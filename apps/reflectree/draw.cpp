@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "measure.hpp"
 #include "pictures.hpp"
 #include "reflectree/error.hpp"
@@ -21,6 +22,7 @@ draw::ReportMaterial draw_material(const Subject& subject, const std::vector<dou
     Pcg32 u(seed, 3);
     std::vector<Direction> drawn;
     for (std::size_t i = 0; i < samples; ++i) {
+      if (i % 4096 == 0 && interrupted()) throw Cancelled();
       if (const auto s = subject.sampler.exact.sample(wo, u)) drawn.push_back(s->wi);
     }
     return drawn;
@@ -44,7 +46,7 @@ constexpr std::size_t drawn_samples = 200'000;
 
 struct Options {
   std::string subject, output;
-  std::vector<double> theta_o_deg{15, 45, 75};
+  std::string theta_o_deg = "15,45,75";
   BuildChoices choices;
 };
 
@@ -83,9 +85,9 @@ std::vector<std::string> write_folder(const std::string& folder, const draw::Rep
 }
 
 int run_draw(const Context& context, const Options& o) {
-  check_theta_o(o.theta_o_deg);
+  const std::vector<double> theta_o_deg = parse_theta_o(o.theta_o_deg);
   const Subject subject = open_subject(context, o.subject, o.choices);
-  const draw::ReportMaterial material = draw_material(subject, o.theta_o_deg, drawn_samples, context.seed);
+  const draw::ReportMaterial material = draw_material(subject, theta_o_deg, drawn_samples, context.seed);
   draw::ReportMeta meta;
   meta.command = "reflectree draw";
   meta.version = REFLECTREE_VERSION;
@@ -102,7 +104,7 @@ int run_draw(const Context& context, const Options& o) {
   }
   if (context.json) {
     context.print_json(
-        "draw", {{"material", subject.data.material}, {"theta_o_deg", o.theta_o_deg}, {"files", written}});
+        "draw", {{"material", subject.data.material}, {"theta_o_deg", theta_o_deg}, {"files", written}});
   } else {
     for (const std::string& path : written) context.print(path + "\n");
   }
@@ -115,14 +117,23 @@ void add_draw(CLI::App& app, Context& context, Run& run) {
   CLI::App* command =
       app.add_subcommand("draw", "Draw a material: its target, the tree over it, samples, and the lobe");
   auto o = std::make_shared<Options>();
-  command->add_option("SAMPLER", o->subject, "A sampler file, or a material")->required();
+  command->add_option("SAMPLER", o->subject, "A sampler file, or a material (built on the fly)")
+      ->type_name("")
+      ->required();
   command
       ->add_option("-o,--output", o->output, "A .html page, one .svg, or a folder for a page and many .svg")
+      ->type_name("PATH")
       ->required();
-  command->add_option("--theta-o-deg", o->theta_o_deg, "Elevations of wo from the normal, as in 0,45,80")
-      ->delimiter(',')
+  command
+      ->add_option("--theta-o-deg", o->theta_o_deg,
+                   "Elevations of wo from the normal, with commas between them")
+      ->type_name("DEG,...")
       ->capture_default_str();
   add_build_choices(*command, o->choices);
+  command->footer(
+      "Examples:\n"
+      "  reflectree draw gold.rfl -o gold.html\n"
+      "  reflectree draw '0.3*lambert + ggx:alpha=0.1' -o pictures --theta-o-deg 10,80");
   command->callback([&context, &run, o] { run = [&context, o] { return run_draw(context, *o); }; });
 }
 

@@ -63,14 +63,14 @@ Json json_of(const Subject& s) {
             {"estimated_slabs", std::ptrdiff_t(d.exact.size()) - certified},
             {"bytes_in_memory", bytes_of(*s.packed)},
             {"bytes_on_disk", nullptr},
-            {"albedo_minimum", *low},
-            {"albedo_maximum", *high},
+            {"albedo_minimum", shortest(*low)},
+            {"albedo_maximum", shortest(*high)},
             {"albedo_nodes", d.albedo.albedo.size()},
-            {"albedo_relative_error", d.albedo.relative_error},
-            {"expected_trials", d.report.expected_trials},
-            {"overshoot_mass", d.report.overshoot_mass},
-            {"one_shot_variance", d.report.one_shot_variance},
-            {"asymmetry", d.report.asymmetry},
+            {"albedo_relative_error", shortest(d.albedo.relative_error)},
+            {"expected_trials", shortest(d.report.expected_trials)},
+            {"overshoot_mass", shortest(d.report.overshoot_mass)},
+            {"one_shot_variance", shortest(d.report.one_shot_variance)},
+            {"asymmetry", shortest(d.report.asymmetry)},
             {"evaluations", d.report.evaluations},
             {"build_seconds", nullptr}};
   if (s.file_size) json["bytes_on_disk"] = *s.file_size;
@@ -131,8 +131,14 @@ void add_info(CLI::App& app, Context& context, Run& run) {
     BuildChoices choices;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("SAMPLER", o->subject, "A sampler file, or a material")->required();
+  command->add_option("SAMPLER", o->subject, "A sampler file, or a material (built on the fly)")
+      ->type_name("")
+      ->required();
   add_build_choices(*command, o->choices);
+  command->footer(
+      "Examples:\n"
+      "  reflectree info gold.rfl\n"
+      "  reflectree info --json ggx:alpha=0.1");
   command->callback([&context, &run, o] {
     run = [&context, o] {
       show_info(context, "info", open_subject(context, o->subject, o->choices));

@@ -23,12 +23,12 @@ std::string value_text(const ParameterInfo& p) {
 Json json_of(const ModelInfo& model) {
   Json parameters = Json::array();
   for (const ParameterInfo& p : model.parameters) {
-    Json initial = p.initial.r;
-    if (p.channels == 3) initial = {p.initial.r, p.initial.g, p.initial.b};
+    Json initial = shortest(p.initial.r);
+    if (p.channels == 3) initial = {shortest(p.initial.r), shortest(p.initial.g), shortest(p.initial.b)};
     parameters.push_back({{"name", p.name},
                           {"channels", p.channels},
-                          {"minimum", p.lo},
-                          {"maximum", p.hi},
+                          {"minimum", shortest(p.lo)},
+                          {"maximum", shortest(p.hi)},
                           {"default", initial},
                           {"unit", p.unit},
                           {"meaning", p.meaning}});
@@ -103,7 +103,13 @@ void add_list(CLI::App& app, Context& context, Run& run) {
   CLI::App* command =
       app.add_subcommand("list", "Show the models; a material in canonical form; the members of a file");
   auto text = std::make_shared<std::string>();
-  command->add_option("MATERIAL", *text, "A material, a file, or a sampler; nothing: all models");
+  command->add_option("MATERIAL", *text, "A material, a file, or a sampler; nothing: all models")
+      ->type_name("");
+  command->footer(
+      "Examples:\n"
+      "  reflectree list                     every model with its parameters\n"
+      "  reflectree list ggx:alpha=.1        that material, every parameter written out\n"
+      "  reflectree list table.csv           the members of a file");
   command->callback([&context, &run, text] {
     run = [&context, text] { return text->empty() ? list_models(context) : list_one(context, *text); };
   });

@@ -24,6 +24,7 @@ constexpr const char* about =
     "A SAMPLER is a file that 'reflectree build' saved.\n";
 
 constexpr const char* footer =
+    "The options stand before or after the subcommand; 'reflectree SUBCOMMAND --help' shows its own.\n"
     "Results go to stdout, words to stderr. Exit codes: 0 success, 1 a check failed, 2 bad input or\n"
     "usage, 3 an internal fault, 130 interrupted. NO_COLOR is obeyed.";
 
@@ -31,12 +32,14 @@ void add_globals(CLI::App& app, Context& context) {
   app.add_flag("--json", context.json, "Results as JSON, with a schema_version");
   app.add_flag("-q,--quiet", context.quiet, "No words on stderr but errors");
   app.add_flag("-v,--verbose", context.verbose, "More words on stderr");
-  app.add_option("--seed", context.seed, "Seed of all random numbers")->capture_default_str();
-  app.add_option("--threads", context.threads, "Threads; 0: one a core. Results do not depend on it")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  app.add_option("--seed", context.seed, "Seed of all random numbers")->capture_default_str()->type_name("N");
+  app.add_option("--threads", context.threads,
+                 "Threads, at most 1024; 0: one a core. Results do not depend on it")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--data", context.data,
-                 "Folder where measured files are looked for as well (default: REFLECTREE_DATA)")
+                 "Folder where files are looked for as well; without it, REFLECTREE_DATA")
       ->type_name("FOLDER");
 }
 
@@ -56,11 +59,11 @@ int dispatch(int argc, char** argv) {
   Context context;
   if (const char* data = std::getenv("REFLECTREE_DATA")) context.data = data;
   CLI::App app(about, "reflectree");
-  app.footer(footer);
   app.set_version_flag("--version", std::string("reflectree ") + REFLECTREE_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
   add_globals(app, context);
+  app.footer(footer);
   Run run;
   for (const auto add :
        {add_list, add_build, add_info, add_sample, add_verify, add_draw, add_bake, add_demo}) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "reflectree/brdf/number_text.hpp"
 #include "reflectree/draw/disk_image.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/domain_map.hpp"
@@ -71,13 +72,19 @@ double nanoseconds(std::uint64_t seed, const Draw& draw) {
 
 Direction random_viewer(Pcg32& u) { return direction_from_angles(89.9f * degree * to_unit_float(u()), 0.f); }
 
-void check_theta_o(const std::vector<double>& theta_o_deg) {
-  for (const double theta : theta_o_deg) {
-    if (!(theta >= 0 && theta < 90)) {
-      throw Error(fmt::format("{} is not above the surface", theta), "--theta-o-deg",
-                  "give degrees from 0 to below 90");
-    }
+std::vector<double> parse_theta_o(const std::string& text) {
+  std::vector<double> theta_o_deg;
+  std::string_view rest = text;
+  while (true) {
+    const auto theta = take_number(rest);
+    if (!theta || !(*theta >= 0 && *theta < 90)) break;
+    theta_o_deg.push_back(double(*theta));
+    if (rest.empty()) return theta_o_deg;
+    if (rest[0] != ',') break;
+    rest.remove_prefix(1);
   }
+  throw Error("'" + text + "' is no list of elevations", "--theta-o-deg",
+              "give degrees from 0 to below 90, with commas between them");
 }
 
 RatioFunction bound_ratio(const Subject& subject) {

@@ -11,8 +11,8 @@ namespace reflectree::cli {
 
 // wo in the x-z plane, uniform in theta_o from 0 to 89.9 degrees.
 Direction random_viewer(Pcg32& u);
-// The word for a list of elevations in degrees, each in [0, 90); throws Error.
-void check_theta_o(const std::vector<double>& theta_o_deg);
+// A list of elevations in degrees, such as "0,45,80", each in [0, 90); throws Error.
+std::vector<double> parse_theta_o(const std::string& text);
 
 // The ratio T / (a M) of the function to its bound, anywhere: what an attack maximises.
 RatioFunction bound_ratio(const Subject& subject);

@@ -66,7 +66,10 @@ std::string csv(const Samples& samples, const std::vector<std::string>& names) {
 }
 
 int run_sample(const Context& context, const Options& o) {
-  check_theta_o({o.theta_o_deg});
+  if (!(o.theta_o_deg >= 0 && o.theta_o_deg < 90)) {
+    throw Error(fmt::format("{} is not above the surface", o.theta_o_deg), "--theta-o-deg",
+                "give degrees from 0 to below 90");
+  }
   const Subject subject = open_subject(context, o.subject, o.choices);
   const double degree = pi_v<double> / 180;
   const Direction wo = direction_from_angles(float(o.theta_o_deg * degree), float(o.phi_o_deg * degree));
@@ -93,7 +96,9 @@ int run_sample(const Context& context, const Options& o) {
       json["rows"] = Json::array();
       for (std::size_t i = 0; i < samples.rows(); ++i) {
         const auto row = samples.values.begin() + std::ptrdiff_t(i * samples.columns);
-        json["rows"].push_back(std::vector<float>(row, row + std::ptrdiff_t(samples.columns)));
+        Json numbers = Json::array();
+        for (std::size_t k = 0; k < samples.columns; ++k) numbers.push_back(shortest(row[std::ptrdiff_t(k)]));
+        json["rows"].push_back(std::move(numbers));
       }
     } else {
       json["output"] = o.output;
@@ -111,22 +116,33 @@ void add_sample(CLI::App& app, Context& context, Run& run) {
   CLI::App* command = app.add_subcommand(
       "sample", "Draw directions: columns wi_x, wi_y, wi_z, pdf (per solid angle), weight (f cos / pdf)");
   auto o = std::make_shared<Options>();
-  command->add_option("SAMPLER", o->subject, "A sampler file, or a material")->required();
+  command->add_option("SAMPLER", o->subject, "A sampler file, or a material (built on the fly)")
+      ->type_name("")
+      ->required();
   command->add_option("--theta-o-deg", o->theta_o_deg, "Elevation of wo from the normal, below 90")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("DEG");
   command->add_option("--phi-o-deg", o->phi_o_deg, "Azimuth of wo")
-      ->check(CLI::Range(-360., 360.))
-      ->capture_default_str();
-  command->add_option("-n,--count", o->count, "How many directions")
-      ->check(CLI::Range(std::uint64_t(1), std::uint64_t(10'000'000)))
-      ->capture_default_str();
+      ->check(CLI::Range(-360., 360.).description(""))
+      ->capture_default_str()
+      ->type_name("DEG");
+  command->add_option("-n,--count", o->count, "How many directions, at most 10000000")
+      ->check(CLI::Range(std::uint64_t(1), std::uint64_t(10'000'000)).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   command->add_option("--mode", o->mode, "exact (rejection) or one-shot (no rejection)")
-      ->check(CLI::IsMember({"exact", "one-shot"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"exact", "one-shot"}).description(""))
+      ->capture_default_str()
+      ->type_name("MODE");
   command
       ->add_option("-o,--output", o->output, "A .npy file, or a CSV file of any other name; default: stdout")
       ->type_name("FILE");
   add_build_choices(*command, o->choices);
+  command->footer(
+      "Examples:\n"
+      "  reflectree sample gold.rfl --theta-o-deg 60 -n 1000 > points.csv\n"
+      "  reflectree sample ggx:alpha=0.1 --mode one-shot -n 100000 -o points.npy\n"
+      "Both directions point away from the surface; z is the normal; wo has azimuth --phi-o-deg.");
   command->callback([&context, &run, o] { run = [&context, o] { return run_sample(context, *o); }; });
 }
 

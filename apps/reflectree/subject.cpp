@@ -82,24 +82,22 @@ Subject assemble(const std::string& text, AnyBrdf f, SamplerData data) {
 }  // namespace
 
 void add_build_choices(CLI::App& command, BuildChoices& choices) {
-  const auto mark = [&choices](const std::string&) { choices.given = true; };
-  command.add_option("--trials", choices.trials, "Expected trials of exact mode, for every wo")
-      ->check(CLI::Range(1.02, 64.))
-      ->each(mark)
-      ->capture_default_str();
-  command.add_option("--variance", choices.variance, "Relative variance of the weight, one-shot mode")
-      ->check(CLI::Range(1e-4, 10.))
-      ->each(mark)
-      ->capture_default_str();
-  command.add_option("--target", choices.target, "What is sampled: norm, luminance, maximum, channel:K")
-      ->each(mark)
-      ->capture_default_str();
-  command
-      .add_option("--domain", choices.domain,
-                  "Map of the tree's square: auto, projected_disk, equal_area, half_vector, back_vector, "
-                  "stretched:A")
-      ->each(mark)
-      ->capture_default_str();
+  const auto option = [&](const char* name, auto& value, const char* type, const char* words) {
+    return command.add_option(name, value, words)
+        ->each([&choices](const std::string&) { choices.given = true; })
+        ->capture_default_str()
+        ->type_name(type)
+        ->group("Options of building, for a material");
+  };
+  option("--trials", choices.trials, "N", "Expected trials of exact mode, for every wo; 1.02 to 64")
+      ->check(CLI::Range(1.02, 64.).description(""));
+  option("--variance", choices.variance, "V",
+         "Relative variance of the weight in one-shot mode; 0.0001 to 10")
+      ->check(CLI::Range(1e-4, 10.).description(""));
+  option("--target", choices.target, "WORD",
+         "What is sampled, of the channels: norm, luminance, maximum, channel:K");
+  option("--domain", choices.domain, "WORD",
+         "Map of the tree's square: auto, projected_disk, equal_area, half_vector, back_vector, stretched:A");
 }
 
 BuildOptions build_options(const Context& context, const BuildChoices& choices) {
