@@ -11,7 +11,7 @@ namespace reflectree::draw {
 namespace {
 
 // A border of the square as a curve over the disk: halved until a chord stays within a tenth of a unit,
-// cut where the domain leaves the upper hemisphere, split by the brightness behind it.
+// split by the brightness behind it.
 class BorderPen {
  public:
   BorderPen(const Domain& domain, Direction wo, const DiskPlace& place, const DiskImage& background,
@@ -21,14 +21,14 @@ class BorderPen {
     range_.to = 1;
   }
 
-  // Not drawn: borders between halves (centres p and q) that are less than a unit apart.
+  // Not drawn: borders between halves (with p and q in their middles) that are less than a unit apart.
   bool worth_drawing(Vec2<float> p, Vec2<float> q) const {
     const Point a = lifted(p), b = lifted(q);
     return std::hypot(b.x - a.x, b.y - a.y) * place_.radius >= 1;
   }
 
   void draw(Vec2<float> a, Vec2<float> b) {
-    constexpr int pieces = 4;  // at least: the square's diagonals are kinks of its map to the disk
+    constexpr int pieces = 4;  // at least: a ring's first chord would be a diameter
     Point from = lifted(a);
     for (int k = 1; k <= pieces; ++k) {
       const float t = float(k) / pieces;
@@ -45,7 +45,6 @@ class BorderPen {
   struct Point {
     Vec2<float> square;
     double x = 0, y = 0;
-    bool above = false;
   };
 
   std::string both_sides(const PathData& data, std::string_view css_class) const {
@@ -67,22 +66,27 @@ class BorderPen {
 
   Point lifted(Vec2<float> p) const {
     const Direction wi = lift(domain_, wo_, p).geometry.wi;
-    return {p, wi.x, wi.y, wi.z > -1e-4f};  // the horizon itself is drawn
+    return {p, wi.x, wi.y};
+  }
+
+  double brightness_at(double x, double y) const {
+    const float v = background_.at(x, y);
+    return range_.at(std::isnan(v) ? 0.0 : double(v));
   }
 
   void refine(const Point& a, const Point& b, int depth) {
     const Point m = lifted({0.5f * (a.square.x + b.square.x), 0.5f * (a.square.y + b.square.y)});
     const double bend = std::hypot(m.x - 0.5 * (a.x + b.x), m.y - 0.5 * (a.y + b.y)) * place_.radius;
     const double length = std::hypot(b.x - a.x, b.y - a.y) * place_.radius;
-    const bool cut = a.above != b.above || a.above != m.above;
-    if (depth < 8 && (bend > 0.1 || length > 12 || cut)) {
+    if (depth < 8 && (bend > 0.1 || length > 12)) {
       refine(a, m, depth + 1);
       refine(m, b, depth + 1);
       return;
     }
-    if (!a.above || !b.above) return;
-    const float v = background_.at(m.x, m.y);
-    const double brightness = range_.at(std::isnan(v) ? 0.0 : double(v));
+    // The mean of both sides: the pixel under the border itself may belong to either.
+    const double aside = length > 0 ? 3 / length : 0;
+    const double nx = (a.y - b.y) * aside, ny = (b.x - a.x) * aside;
+    const double brightness = 0.5 * (brightness_at(m.x + nx, m.y + ny) + brightness_at(m.x - nx, m.y - ny));
     // With some inertia, so that a border across an even middle tone is not broken into dashes.
     const bool joined = last_x_ == a.x && last_y_ == a.y;
     const bool bright = brightness > (!joined || latest_ == nullptr ? 0.62 : latest_ == &dark_ ? 0.52 : 0.72);
@@ -109,13 +113,20 @@ class BorderPen {
 std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo, double x,
                          double y, double radius, const DiskImage& background, const Axis& range) {
   BorderPen pen(domain, wo, {x, y, radius}, background, range);
-  // Each inner node draws the line that halves its box: every border once.
+  // Each inner node draws the line that halves its box: every border once. The edges of the square are no
+  // borders where a leaf continues beyond them: y = 0 of a half square is the pole, and across x = -1 and 1,
+  // the plane of incidence, lies the leaf's own mirror image. In a full square it is another leaf's.
   std::vector<Cell> boxes{{-1, 1, domain.half ? 0.f : -1.f, 1}};
-  if (domain.half) pen.draw({-1, 0}, {1, 0});
   for (const Split split : nodes) {
     const Cell c = boxes.back();
     boxes.pop_back();
-    if (split == Split::leaf) continue;
+    if (split == Split::leaf) {
+      if (domain.half || c.y0 < 0) continue;
+      for (const float edge : {-1.f, 1.f}) {
+        if (c.x0 == edge || c.x1 == edge) pen.draw({edge, c.y0}, {edge, c.y1});
+      }
+      continue;
+    }
     Cell lower_half = c, upper_half = c;
     const bool along_x = split == Split::x;
     const Vec2<float> centre{0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)};
@@ -123,7 +134,9 @@ std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, 
     (along_x ? upper_half.x0 : upper_half.y0) = along_x ? centre.x : centre.y;
     const Vec2<float> step =
         along_x ? Vec2<float>{0.25f * (c.x1 - c.x0), 0} : Vec2<float>{0, 0.25f * (c.y1 - c.y0)};
-    if (pen.worth_drawing({centre.x - step.x, centre.y - step.y}, {centre.x + step.x, centre.y + step.y})) {
+    // A wedge that holds the pole is widest at its rim.
+    const Vec2<float> at{centre.x, !along_x ? centre.y : -c.y0 > c.y1 ? c.y0 : c.y1};
+    if (pen.worth_drawing({at.x - step.x, at.y - step.y}, {at.x + step.x, at.y + step.y})) {
       along_x ? pen.draw({centre.x, c.y0}, {centre.x, c.y1}) : pen.draw({c.x0, centre.y}, {c.x1, centre.y});
     }
     boxes.push_back(upper_half);

@@ -44,7 +44,7 @@ DiskImage tree_image(const Tree& tree, const Domain& domain, Direction wo, int s
           const float projected_area = lift(domain, wo, p).projected_area;
           const LeafFinder::Leaf leaf = finder.find(p);
           const double mean = scale * tree.mass[leaf.index] / share(leaf.cell, domain);
-          out[i] = projected_area > 0 ? float(mean) * leaf_shape(tree, leaf, p) / projected_area : 0.f;
+          out[i] = float(mean) * leaf_shape(tree, leaf, p) / projected_area;
         }
       },
       size);

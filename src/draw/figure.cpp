@@ -52,10 +52,13 @@ color:var(--ink);font-family:"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial
 .rt .box-dashed{fill:none;stroke:var(--rule);stroke-width:1.2;stroke-dasharray:4 4}
 .rt .fit{fill:none;stroke:var(--bars);stroke-width:2.2}
 .rt .corner-in{fill:var(--curve);stroke:var(--curve)}.rt .corner-out{fill:var(--paper);stroke:var(--soft);stroke-width:1.4}
+.rt .cell-night,.rt .cell-bright{fill:none}
 .rt .cell-night{stroke:#fff;stroke-width:.5;stroke-opacity:.6}.rt .cell-bright{stroke:#1a1030;stroke-width:.5;stroke-opacity:.6}
 .rt .stairs{stroke:var(--ink);stroke-width:1.4}
 .rt .fill-strong{fill:var(--curve);fill-opacity:.75;stroke:none}
 .rt .nested{fill:var(--bars);fill-opacity:.14;stroke:var(--bars);stroke-width:1.5}
+.rt .ring-mark{fill:#3fc1c9;fill-opacity:.62;fill-rule:evenodd;stroke:none}.rt .wedge-mark{fill:#f5a13a;fill-opacity:.72;stroke:none}
+.rt .pole{stroke:var(--curve);stroke-width:2.4}
 .rt .guide{stroke:var(--soft);stroke-width:1;stroke-dasharray:3 3}
 .rt .whisker{stroke:var(--bars);stroke-width:1;stroke-opacity:.85}
 .rt .accepted{stroke:var(--accept);stroke-width:3.2}

@@ -15,30 +15,9 @@ constexpr double deg = pi_v<double> / 180;
 
 }  // namespace
 
-Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
-                    std::span<const Direction> samples) {
-  const PlaneLobe lobe = plane_lobe(f, target, wo, albedo);
-  const PlaneHistogram histogram = plane_histogram(samples);
-  double highest = 0;
-  for (const double d : lobe.density) highest = std::max(highest, d);
-  // At most 128 bars of equal probability, each of at least 40 directions.
-  double expected = 0;
-  for (const double d : lobe.density) {
-    if (histogram.samples > 0) expected += d / histogram.density_per_count();
-  }
-  const std::vector<PlaneBar> plane = plane_bars(histogram, lobe, std::max(40.0, expected / 128));
-  for (const PlaneBar& b : plane) highest = std::max(highest, b.count * b.density_per_count);
-  if (highest <= 0) highest = 1;
-
-  Figure figure{disk_figure_width, disk_figure_height, "Lobe in the plane of incidence", {}, {}};
-  figure.description =
-      "The density of light directions within 5 degrees of the plane of incidence: the curve is the target, "
-      "the bars are sampled; the highest density is " +
-      pretty(highest) + " per steradian.";
-  figure.body = disk_heading(figure.title, wo);
-
-  // The polar plot.
-  const double cx = 180, cy = 196, radius = 142;
+std::string polar_plot(const PlaneLobe& lobe, std::span<const PlaneBar> plane, Direction wo, double highest,
+                       double cx, double cy, double radius) {
+  std::string out;
   const auto reach = [&](double density) {
     return radius * std::sqrt(std::clamp(density / highest, 0.0, 1.0));
   };
@@ -65,12 +44,12 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
     const double r = radius + 9;
     const Anchor anchor = a < 0 ? Anchor::end : a > 0 ? Anchor::start : Anchor::middle;
     if (std::abs(a) < 90) {
-      figure.body += label(cx + r * std::sin(a * deg), cy - r * std::cos(a * deg) + 3,
-                           (a < 0 ? "−" : "") + std::to_string(std::abs(a)) + "°", anchor, "tick");
+      out += label(cx + r * std::sin(a * deg), cy - r * std::cos(a * deg) + 3,
+                   (a < 0 ? "−" : "") + std::to_string(std::abs(a)) + "°", anchor, "tick");
     }
   }
-  figure.body += path(rings, "grid") + path(spokes, "grid") + line(cx - radius, cy, cx + radius, cy, "axis");
-  figure.body += ring_labels + label(cx - radius, cy + 14, "density / sr⁻¹", Anchor::start, "tick");
+  out += path(rings, "grid") + path(spokes, "grid") + line(cx - radius, cy, cx + radius, cy, "axis");
+  out += ring_labels + label(cx - radius, cy + 14, "density / sr⁻¹", Anchor::start, "tick");
   PathData bars;
   bars.move_to(cx, cy);
   for (const PlaneBar& b : plane) {
@@ -81,7 +60,7 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
     }
   }
   bars.close();
-  figure.body += path(bars, "bar");
+  out += path(bars, "bar");
   PathData outline;
   for (std::size_t i = 0; i < lobe.angle.size(); ++i) {
     const double r = reach(lobe.density[i]), a = lobe.angle[i] * deg;
@@ -89,7 +68,7 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
     outline.line_to(cx + r * std::sin(a), cy - r * std::cos(a));
   }
   outline.line_to(cx, cy);
-  figure.body += path(outline, "curve");
+  out += path(outline, "curve");
   PathData viewer;
   viewer.move_to(cx, cy);
   const double s = double(wo.x), c = double(wo.z), tip = radius + 4;
@@ -97,11 +76,38 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
   viewer.move_to(cx + tip * s - 8 * s - 3.5 * c, cy - tip * c + 8 * c - 3.5 * s);
   viewer.line_to(cx + tip * s, cy - tip * c);
   viewer.line_to(cx + tip * s - 8 * s + 3.5 * c, cy - tip * c + 8 * c + 3.5 * s);
-  figure.body += path(viewer, "arrow");
+  out += path(viewer, "arrow");
   // Its name stands where there is room: right of a steep arrow, above a flat one.
   const double side = s < 0.8 ? 1 : -1;
-  figure.body += label(cx + 0.78 * tip * s + side * 9 * c, cy - 0.78 * tip * c + side * 9 * s, "*ω*_o",
-                       side > 0 ? Anchor::start : Anchor::end, "label");
+  out += label(cx + 0.78 * tip * s + side * 9 * c, cy - 0.78 * tip * c + side * 9 * s, "*ω*_o",
+               side > 0 ? Anchor::start : Anchor::end, "label");
+
+  return out;
+}
+
+Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
+                    std::span<const Direction> samples) {
+  const PlaneLobe lobe = plane_lobe(f, target, wo, albedo);
+  const PlaneHistogram histogram = plane_histogram(samples);
+  double highest = 0;
+  for (const double d : lobe.density) highest = std::max(highest, d);
+  // At most 128 bars of equal probability, each of at least 40 directions.
+  double expected = 0;
+  for (const double d : lobe.density) {
+    if (histogram.samples > 0) expected += d / histogram.density_per_count();
+  }
+  const std::vector<PlaneBar> plane = plane_bars(histogram, lobe, std::max(40.0, expected / 128));
+  for (const PlaneBar& b : plane) highest = std::max(highest, b.count * b.density_per_count);
+  if (highest <= 0) highest = 1;
+
+  Figure figure{disk_figure_width, disk_figure_height, "Lobe in the plane of incidence", {}, {}};
+  figure.description =
+      "The density of light directions within 5 degrees of the plane of incidence: the curve is the target, "
+      "the bars are sampled; the highest density is " +
+      pretty(highest) + " per steradian.";
+  figure.body = disk_heading(figure.title, wo);
+
+  figure.body += polar_plot(lobe, plane, wo, highest, 180, 196, 142);
 
   // The strip.
   Frame strip;

@@ -112,12 +112,14 @@ TEST(TreeImage, ASlopeTiltsTheLeaf) {
   const Direction wo = viewer_at(0.5f);
   const DiskImage flat = bound_image(data, wo, 64);
   data.exact[0].slope_x[0] = 64;
-  data.one_shot[0].slope_x[0] = -64;
+  data.one_shot[0].slope_y[0] = -64;
   const DiskImage tilted = bound_image(data, wo, 64), other = one_shot_image(data, wo, 64);
+  // x is the azimuth: 1 towards the viewer, 0 aside, -1 away; y = sin^2 theta_i.
   EXPECT_NEAR(flat.at(-0.9, 0.01) / flat.at(0.9, 0.01), 1, 1e-4);
-  EXPECT_NEAR(tilted.at(0.9, 0.01) / flat.at(0.9, 0.01), 1 + 0.5 * 0.9, 0.02);
-  EXPECT_NEAR(tilted.at(-0.9, 0.01) / flat.at(-0.9, 0.01), 1 - 0.5 * 0.9, 0.02);
-  EXPECT_GT(other.at(-0.9, 0.01), 2 * other.at(0.9, 0.01));
+  EXPECT_NEAR(tilted.at(0.9, 0.01) / flat.at(0.9, 0.01), 1.5, 0.02);
+  EXPECT_NEAR(tilted.at(-0.9, 0.01) / flat.at(-0.9, 0.01), 0.5, 0.02);
+  EXPECT_NEAR(tilted.at(0.01, 0.9) / flat.at(0.01, 0.9), 1, 0.02);
+  EXPECT_NEAR(other.at(0.01, 0.01) / other.at(-0.9, 0.3), 1.5 / (1.5 - 0.9), 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Domains, TreeImages,

@@ -181,20 +181,5 @@ TEST(SlabsFigure, CountsAndDrawsEverySlab) {
   EXPECT_EQ(occurrences(figure.body, "class=\"fill-2\""), 2U);
 }
 
-TEST(CellBorders, FollowTheDomain) {
-  // One split at x = 0 of the whole square: the vertical diameter.
-  const DiskImage dark{2, {0, 0, 0, 0}};
-  const std::vector<Split> nodes{Split::x, Split::leaf, Split::leaf};
-  const std::string d = cell_borders(nodes, {DomainKind::projected_disk, false, 0}, viewer_at(0.f), 100, 100,
-                                     50, dark, {0.1, 1, 0, 1, true});
-  EXPECT_EQ(occurrences(d, "M100 150"), 1U) << d;
-  EXPECT_EQ(occurrences(d, "cells-light"), 1U);
-  EXPECT_EQ(occurrences(d, "<use"), 0U);
-  // A half domain is mirrored.
-  const std::string half = cell_borders(nodes, {DomainKind::projected_disk, true, 0}, viewer_at(0.f), 100,
-                                        100, 50, dark, {0.1, 1, 0, 1, true});
-  EXPECT_EQ(occurrences(half, "<use"), 1U);
-}
-
 }  // namespace
 }  // namespace reflectree::draw

@@ -28,12 +28,13 @@ class Cutter {
     const Split split = fine_.nodes[node_++];
     const bool open = depth > 0 && split != Split::leaf;
     if (depth >= 0) coarse_.nodes.push_back(open ? split : Split::leaf);
-    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0, 0, 0});
+    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0, 0, 0, 0});
     if (split == Split::leaf) {
       const double mean =
           double(fine_.volume) * fine_.mass[leaf_] / total_ / share_of(cells_[leaf_], domain_);
       const double gx = fine_.slope_x[leaf_] / 128.0, gy = fine_.slope_y[leaf_] / 128.0;
       CoarseLeaf& leaf = coarse_.leaves.back();
+      leaf.mass += double(fine_.volume) * fine_.mass[leaf_] / total_;
       if (depth >= 0) {
         leaf.majorant = mean;
         leaf.slope_x = gx;
@@ -68,7 +69,6 @@ class Cutter {
 
 double normalised_target(const Example& example, Vec2<float> p) {
   const DomainPoint point = lift(example.data.domain, example.wo, p);
-  if (point.projected_area <= 0) return 0;
   const Spectrum value = example.f(point.geometry);
   return double(example.data.target(value) * point.projected_area /
                 albedo_at(example.data.albedo, example.wo.z));
@@ -89,24 +89,6 @@ CoarseTree cut(const Example& example, int depth) {
     }
   }
   return coarse;
-}
-
-std::string rgb_text(double t) {
-  const draw::Rgb8 c = draw::colour(t);
-  return "rgb(" + std::to_string(c.r) + "," + std::to_string(c.g) + "," + std::to_string(c.b) + ")";
-}
-
-std::string cell_rectangle(const Cell& cell, const Domain& domain, double x, double y, double width,
-                           std::string_view css_class, std::string_view fill) {
-  using draw::number;
-  const double half = width / 2, bottom = y + (domain.half ? half : width), y0 = domain.half ? 0 : -1;
-  return draw::element("rect", {{"class", css_class},
-                                {"x", number(x + half * double(cell.x0 + 1))},
-                                {"y", number(bottom - half * (double(cell.y1) - y0))},
-                                {"width", number(half * double(cell.x1 - cell.x0))},
-                                {"height", number(half * double(cell.y1 - cell.y0))},
-                                {"fill", fill}}) +
-         "\n";
 }
 
 }  // namespace reflectree::method

@@ -14,6 +14,7 @@ struct CoarseLeaf {
   double share = 0;                 // of the square
   double majorant = 0;              // of the leaf; of merged leaves, the largest of their bounds
   double slope_x = 0, slope_y = 0;  // of the leaf's shape; merged leaves are flat
+  double mass = 0;                  // the volume of the leaf or of all leaves merged into it
   double integral = 0;              // of T / albedo over the leaf, for one wo
   double volume() const { return share * majorant; }
   double bound(Vec2<float> p) const {
@@ -33,10 +34,5 @@ CoarseTree cut(const Example& example, int depth);
 
 // T / albedo at a point of the square.
 double normalised_target(const Example& example, Vec2<float> p);
-
-// A leaf's rectangle on a drawn square whose left upper corner is (x, y).
-std::string cell_rectangle(const Cell& cell, const Domain& domain, double x, double y, double width,
-                           std::string_view css_class, std::string_view fill = {});
-std::string rgb_text(double t);  // colour(t) for a fill
 
 }  // namespace reflectree::method

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "coarse_tree.hpp"
+#include "reflectree/draw/square_image.hpp"
 
 namespace reflectree::method {
 
@@ -21,7 +22,7 @@ struct Node {
 class Walk {
  public:
   explicit Walk(const CoarseTree& tree) : tree_(tree) {
-    for (const CoarseLeaf& leaf : tree.leaves) total_ += leaf.volume();
+    for (const CoarseLeaf& leaf : tree.leaves) total_ += leaf.mass;
   }
   std::vector<Node> nodes;
 
@@ -31,7 +32,7 @@ class Walk {
     const Split split = tree_.nodes[node_++];
     double to = from;
     if (split == Split::leaf) {
-      to += tree_.leaves[leaf_++].volume() / total_;
+      to += tree_.leaves[leaf_++].mass / total_;
     } else {
       Cell lower_half = cell, upper_half = cell;
       if (split == Split::x) {
@@ -56,7 +57,7 @@ class Walk {
 Figure descent_figure(const Example& example) {
   const Domain& domain = example.data.domain;
   constexpr int depth = 5;
-  constexpr double u = 0.73;
+  constexpr double u = 0.42;
   const CoarseTree tree = cut(example, depth);
   Walk walk(tree);
   const Cell root{-1, 1, domain.half ? 0.f : -1.f, 1};
@@ -65,7 +66,7 @@ Figure descent_figure(const Example& example) {
   Figure figure{840, 330, "Choosing a leaf", {}, {}};
   figure.description =
       "Each level of the tree divides the unit interval in proportion to its nodes' volumes; the random "
-      "number 0.73 falls through nested intervals to a leaf, and chooses nested cells of the square.";
+      "number 0.42 falls through nested intervals to a leaf, and chooses nested cells of the square.";
   const double left = 62, width = 400, top = 66, row = 34;
   figure.body =
       label(16, 26, "Choosing a leaf in proportion to its volume *V* = area × bound", Anchor::start, "head");
@@ -85,23 +86,22 @@ Figure descent_figure(const Example& example) {
   arrow.move_to(x - 3.5, bottom);
   arrow.line_to(x, bottom + 6);
   arrow.line_to(x + 3.5, bottom);
-  figure.body += path(arrow, "arrow") + label(x, top - 18, "*u* = 0.73", Anchor::middle, "label");
+  figure.body += path(arrow, "arrow") + label(x, top - 18, "*u* = 0.42", Anchor::middle, "label");
   figure.body += line(left, bottom + 14, left + width, bottom + 14, "axis");
   for (const int k : {0, 1}) {
     figure.body += label(left + width * k, bottom + 28, std::to_string(k), Anchor::middle, "tick");
   }
 
-  const double side = 310, square_left = 506, square_top = domain.half ? top + 24 : 40;
+  SquarePlace place{516, 40, 300, domain.half};
+  if (domain.half) place.y = top + 24;
   for (const CoarseLeaf& leaf : tree.leaves) {
-    figure.body += cell_rectangle(leaf.cell, domain, square_left, square_top, side, "interval");
+    figure.body += cell_rectangle(leaf.cell, place, "interval");
   }
   for (const Node& n : walk.nodes) {
-    if (u >= n.from && u < n.to)
-      figure.body += cell_rectangle(n.cell, domain, square_left, square_top, side, "nested");
+    if (u >= n.from && u < n.to) figure.body += cell_rectangle(n.cell, place, "nested");
   }
-  const double below = square_top + (domain.half ? side / 2 : side);
-  figure.body +=
-      label(square_left, below + 20, "the same nodes as cells of the square", Anchor::start, "note");
+  figure.body += square_axes(place) + label(place.x, place.y + place.height() + 36,
+                                            "the same nodes as cells of the square", Anchor::start, "note");
   return figure;
 }
 

@@ -8,7 +8,8 @@
 
 namespace reflectree::method {
 
-// The material of all figures but where a figure names another: red plastic, built by build().
+// The material of all figures but where a figure names another: red plastic that also returns light to the
+// viewer, built by build().
 struct Example {
   AnyBrdf f;
   SamplerData data;
@@ -16,7 +17,7 @@ struct Example {
 };
 Example make_example();
 
-// Target, tree and samples in a row: the method in one picture.
+// Target, tree, samples and lobe in a row: the method in one picture.
 draw::Figure overview_figure(const Example& example);
 draw::Figure problem_figure(const Example& example);
 draw::Figure domains_figure();

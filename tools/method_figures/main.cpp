@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "figures.hpp"
-#include "reflectree/brdf/models/plastic.hpp"
+#include "reflectree/brdf/material.hpp"
 #include "reflectree/draw/material_figures.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/build.hpp"
@@ -14,7 +14,8 @@
 namespace reflectree::method {
 
 Example make_example() {
-  const AnyBrdf f = Plastic{{0.1f, 0.02f, 0.015f}, 0.05f, 0.12f};
+  const AnyBrdf f = make_brdf(
+      parse_material("plastic:kd=0.1/0.02/0.015,f0=0.05,alpha=0.12 + 0.06*retro_reflector:alpha=0.15"));
   BuildOptions options;
   options.domain = Domain{DomainKind::half_vector, true, 0};  // named: figures and text speak of its cells
   return {f, build(f, options), draw::viewer_at(50 * pi / 180)};

@@ -35,11 +35,12 @@ Figure one_shot_figure(const Example& example) {
         "*a* × density / sr⁻¹",
         cell_borders(tree.nodes, example.data.domain, example.wo, x, y, radius, density, range));
   panel("weight", weight, ratio, diverging_palette(), "weight / albedo", "");
-  return side_by_side("One-shot mode",
-                      "The target of red plastic seen at 50 degrees, the piecewise product-linear density of "
-                      "the one-shot tree, and "
-                      "their ratio, which is near one everywhere.",
-                      panels, 3, 8);
+  return side_by_side(
+      "One-shot mode",
+      "The target of the material seen at 50 degrees, the piecewise product-linear density of "
+      "the one-shot tree, and "
+      "their ratio, which is near one everywhere.",
+      panels, 3, 8);
 }
 
 }  // namespace reflectree::method

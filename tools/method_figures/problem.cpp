@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The method in one picture, and step 1: the same number of directions by three samplers, and the variance
-// that each leaves.
+// Step 1: the same number of directions by three samplers, and the variance that each leaves.
 #include <cmath>
 #include <functional>
 
@@ -32,24 +31,6 @@ struct Drawn {
 };
 
 }  // namespace
-
-Figure overview_figure(const Example& example) {
-  const Sampler<AnyBrdf> sampler = make_sampler(example.f, example.data);
-  const DiskImage target = target_image(example.f, example.data.target, example.wo);
-  std::vector<Direction> samples;
-  Pcg32 random(1);
-  for (int i = 0; i < 2500; ++i) {
-    if (const auto s = sampler.exact.sample(example.wo, random)) samples.push_back(s->wi);
-  }
-  return side_by_side(
-      "From a function to directions",
-      "A reflectance function over the disk of light directions, the tree of bounds built from it, and "
-      "directions "
-      "drawn with a density exactly proportional to it.",
-      {target_figure(target, example.wo), tree_figure(example.data, example.wo, log_range(target)),
-       samples_figure(target, example.wo, samples)},
-      3, 0);
-}
 
 Figure problem_figure(const Example& example) {
   constexpr std::size_t n = 200000, shown = 700;
@@ -93,7 +74,8 @@ Figure problem_figure(const Example& example) {
   panel("exact", exact);
   return side_by_side(
       "Three ways to choose directions",
-      "700 directions each, uniform, by cosine and exact, over the target of red plastic seen at 50 degrees. "
+      "700 directions each, uniform, by cosine and exact, over the target of the material seen at 50 "
+      "degrees. "
       "Only the exact ones gather where the target is bright; their weights have no variance.",
       panels, 3, 4);
 }

@@ -23,7 +23,7 @@ void cross(PathData& data, double x, double y, double r) {
   data.line_to(x + r, y - r);
 }
 
-constexpr int coarse_depth = 6;
+constexpr int coarse_depth = 8;
 
 }  // namespace
 
@@ -38,24 +38,24 @@ Figure rejection_figure(const Example& example) {
       "the "
       "same trials over the disk, dots accepted, crosses rejected.";
 
-  // Left: the cut at the lowest row of cells, along x.
-  const float cut_y = domain.half ? 0.06f : 0.03f;
+  // Left: the cut from the pole to the rim, a little aside of the plane of incidence.
+  constexpr float cut_x = -0.9f;
   constexpr int steps = 600;
   std::vector<double> x, target, bound;
   double highest = 0;
   for (int i = 0; i <= steps; ++i) {
-    const Vec2<float> p{2 * (float(i) + 0.5f) / (steps + 1) - 1, cut_y};
-    x.push_back(double(p.x));
+    const Vec2<float> p{cut_x, (float(i) + 0.5f) / (steps + 1)};
+    x.push_back(double(p.y));
     target.push_back(normalised_target(example, p));
     bound.push_back(tree.leaves[finder.find(p).index].bound(p));
     highest = std::max(highest, bound.back());
   }
   Frame f;
-  f.x = {-1, 1, 50, 440};
+  f.x = {0, 1, 50, 440};
   f.y = {0, highest * 1.08, 318, 62};
-  f.x_ticks = ticks(f.x, 4);
+  f.x_ticks = ticks(f.x, 5);
   f.y_ticks = ticks(f.y, 5);
-  f.x_title = "*x* on the square";
+  f.x_title = "*y* on the square: from the pole to the rim";
   f.y_title = "*T* / *a*, and the bounds of the leaves";
   figure.body += frame(f);
   Pcg32 random(6);
@@ -113,7 +113,7 @@ Figure rejection_figure(const Example& example) {
 }
 
 Figure restart_figure(const Example& example) {
-  const CoarseTree tree = cut(example, 5);
+  const CoarseTree tree = cut(example, 7);
   double volume = 0, integral = 0, worst = 0;
   for (const CoarseLeaf& leaf : tree.leaves) volume += leaf.volume(), integral += leaf.integral;
   Figure figure{840, 300, "Why a rejection starts again", {}, {}};

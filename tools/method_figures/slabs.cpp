@@ -29,8 +29,7 @@ std::vector<double> grid_of(const AnyBrdf& f, const Domain& domain, double theta
   for (int k = 0; k < n * n; ++k) {
     const Vec2<float> p{2 * (float(k % n) + 0.5f) / float(n) - 1, (float(k / n) + 0.5f) / float(n)};
     const DomainPoint point = lift(domain, wo, p);
-    values.push_back(point.projected_area > 0 ? double(target(f(point.geometry)) * point.projected_area)
-                                              : 0.0);
+    values.push_back(double(target(f(point.geometry)) * point.projected_area));
   }
   return values;
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Step 4: the tree of one slab as it refines: cut at four depths, on its square and on the disk.
+// Step 4: the tree of one slab as it refines: cut at two depths and whole, on its square and on the disk.
 #include <algorithm>
 
 #include "coarse_tree.hpp"
 #include "reflectree/draw/material_figures.hpp"
+#include "reflectree/draw/square_image.hpp"
 #include "reflectree/sampler/albedo.hpp"
 #include "reflectree/sampler/domain_map.hpp"
 
@@ -13,45 +14,41 @@ using namespace draw;
 
 Figure tree_growth_figure(const Example& example) {
   const Domain& domain = example.data.domain;
-  const double width = 268, side = 244, left = 12, top = 56, height = domain.half ? side / 2 : side,
-               radius = 118;
-  const CoarseTree finest = cut(example, 64);
-  double lowest = 1e300, highest = 0;
-  for (const CoarseLeaf& leaf : finest.leaves) {
-    if (leaf.majorant > 0) lowest = std::min(lowest, leaf.majorant);
-    highest = std::max(highest, leaf.majorant);
-  }
-  const Axis range{std::max(lowest, highest * 1e-4), highest, 0, 1, true};
+  constexpr double width = 280, radius = 116;
+  const SquarePlace place{38, 56, 2 * radius, domain.half};
+  double highest = 0;
+  for (const CoarseLeaf& leaf : cut(example, 64).leaves) highest = std::max(highest, leaf.majorant);
+  const Axis range{highest * 2e-3, highest, 0, 1, true};
   const Axis disk_range = log_range(target_image(example.f, example.data.target, example.wo, 220));
+  const float albedo = albedo_at(example.data.albedo, example.wo.z);
   std::vector<Figure> panels;
   for (const int depth : {3, 5, 64}) {
     const CoarseTree tree = cut(example, depth);
+    const LeafFinder finder(tree.nodes, domain);
+    const auto bound = [&](Vec2<float> p) { return tree.leaves[finder.find(p).index].bound(p); };
     double volume = 0;
     for (const CoarseLeaf& leaf : tree.leaves) volume += leaf.volume();
-    Figure figure{width, top + height + 40 + 2 * radius + 12, "", {}, {}};
-    const std::string title = std::to_string(tree.leaves.size()) + " leaves";
-    figure.body = label(left, 24, title, Anchor::start, "head") +
-                  label(left, 42, number(volume, 2) + " trials a direction", Anchor::start, "note");
+    const double x = place.x + radius, y = place.y + place.height() + 40 + radius;
+    Figure figure{width, y + radius + 12, "", {}, {}};
+    figure.body = label(place.x, 24, std::to_string(tree.leaves.size()) + " leaves", Anchor::start, "head") +
+                  label(place.x, 42, number(volume, 2) + " trials a direction", Anchor::start, "note");
+    figure.body += square_raster(bound, range, place);
     for (const CoarseLeaf& leaf : tree.leaves) {
-      figure.body += cell_rectangle(leaf.cell, domain, left, top, side,
-                                    range.at(leaf.majorant) > 0.62 ? "cell-bright" : "cell-night",
-                                    rgb_text(range.at(leaf.majorant)));
+      figure.body +=
+          cell_rectangle(leaf.cell, place, range.at(leaf.majorant) > 0.62 ? "cell-bright" : "cell-night");
     }
-    const double x = left + side / 2, y = top + height + 24 + radius;
-    const LeafFinder finder(tree.nodes, domain);
-    const float albedo = albedo_at(example.data.albedo, example.wo.z);
-    const DiskImage bound = disk_image(
+    figure.body += square_axes(place);
+    const DiskImage image = disk_image(
         [&](std::span<const Direction> wi, std::span<float> out) {
           for (std::size_t i = 0; i < wi.size(); ++i) {
             const Direction folded{wi[i].x, domain.half ? abs(wi[i].y) : wi[i].y, wi[i].z};
             const Vec2<float> p = lower(domain, example.wo, folded);
-            const float area = lift(domain, example.wo, p).projected_area;
-            out[i] = area > 0 ? float(tree.leaves[finder.find(p).index].bound(p)) * albedo / area : 0.f;
+            out[i] = float(bound(p)) * albedo / lift(domain, example.wo, p).projected_area;
           }
         },
-        220);
-    figure.body += disk_raster(bound, disk_range, x, y, 2 * radius);
-    figure.body += cell_borders(tree.nodes, domain, example.wo, x, y, radius, bound, disk_range);
+        420);
+    figure.body += disk_raster(image, disk_range, x, y, 2 * radius);
+    figure.body += cell_borders(tree.nodes, domain, example.wo, x, y, radius, image, disk_range);
     figure.body += circle(x, y, radius, "rim");
     panels.push_back(figure);
   }

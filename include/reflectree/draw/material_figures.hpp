@@ -49,6 +49,11 @@ struct PlaneBar {
 std::vector<PlaneBar> plane_bars(const PlaneHistogram& histogram, const PlaneLobe& lobe,
                                  double least_expected);
 
+// Both about (cx, cy) as areas, which are probabilities: the radius is the root of the density, `radius` at
+// the density `highest`.
+std::string polar_plot(const PlaneLobe& lobe, std::span<const PlaneBar> bars, Direction wo, double highest,
+                       double cx, double cy, double radius);
+
 // `albedo` = albedo_at(data.albedo, wo.z).
 Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double albedo,
                     std::span<const Direction> samples);
@@ -56,7 +61,7 @@ Figure polar_figure(const AnyBrdf& f, const Target& target, Direction wo, double
 // The target's disk alone, 64 units wide: for tables.
 Figure thumbnail_figure(const AnyBrdf& f, const Target& target, Direction wo);
 
-// The square of the domain with the slab's leaves, in colours of the normalised bound (majorant).
+// The square of the domain with the slab's leaves, in colours of the bound on the normalised target.
 Figure square_figure(const SamplerData& data, Direction wo);
 
 // Leaves of every slab of theta_o, exact and one-shot.

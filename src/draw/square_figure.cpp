@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tree where it grows: the leaves and their tilted bounds on the square.
+#include <algorithm>
+
+#include "disk_frame.hpp"
+#include "reflectree/draw/material_figures.hpp"
+#include "reflectree/draw/square_image.hpp"
+
+namespace reflectree::draw {
+
+Figure square_figure(const SamplerData& data, Direction wo) {
+  const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
+  const std::vector<Cell> cells = leaf_cells(tree.nodes, data.domain);
+  const LeafFinder finder(tree.nodes, data.domain);
+  double mass = 0, hi = 0, lo = 1e300;
+  for (const std::uint32_t m : tree.mass) mass += m;
+  const auto bound = [&](Vec2<float> p) {
+    const LeafFinder::Leaf leaf = finder.find(p);
+    const Cell& c = leaf.cell;
+    const double area = double(c.x1 - c.x0) * double(c.y1 - c.y0) / (data.domain.half ? 2 : 4);
+    return double(tree.volume) * tree.mass[leaf.index] / mass / area * double(leaf_shape(tree, leaf, p));
+  };
+  for (const Cell& c : cells) {
+    for (const float x : {0.01f, 0.99f}) {
+      for (const float y : {0.01f, 0.99f}) {
+        const double b = bound({lerp(x, c.x0, c.x1), lerp(y, c.y0, c.y1)});
+        hi = std::max(hi, b);
+        lo = std::min(lo, b);
+      }
+    }
+  }
+  const double total_width = 560;
+  SquarePlace place{0, 48, data.domain.half ? 440.0 : 320.0, data.domain.half};
+  place.x = (total_width - place.width) / 2;
+  const Axis range{std::max(lo, hi * 1e-4), std::max(hi, lo * 10), place.x, place.x + place.width, true};
+  Figure figure{total_width, place.y + place.height() + 82, "The tree on its square", {}, {}};
+  figure.description = "The square of the domain " + std::string(name_of(data.domain.kind)) +
+                       " cut into leaves, coloured by their bounds; azimuth to the right, radius upwards.";
+  figure.body = label(16, 24, figure.title, Anchor::start, "head") +
+                label(total_width - 16, 24, theta_o_text(wo), Anchor::end, "aside");
+  figure.body += square_raster(bound, range, place, 400);
+  Axis unit = range;
+  unit.from = 0;
+  unit.to = 1;
+  for (const Cell& c : cells) {
+    const double middle = unit.at(bound({0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)}));
+    figure.body += cell_rectangle(c, place, middle > 0.62 ? "cell-bright" : "cell-night");
+  }
+  figure.body += square_axes(place) + colour_bar({range, place.y + place.height() + 36, 8,
+                                                  "bound on the normalised target *T* / *â*"});
+  return figure;
+}
+
+}  // namespace reflectree::draw
