@@ -42,11 +42,12 @@ const Sampler<Ggx>& ggx(float alpha) {
 
 template <class Draw>
 void run(benchmark::State& state, Draw&& draw) {
+  const std::vector<Direction>& wo = pool();
   Pcg32 u(1);
   std::size_t i = 0;
   float sum = 0;
   for (auto _ : state) {
-    sum += draw(pool()[i++ & 4095U], u);
+    sum += draw(wo[i++ & 4095U], u);
     benchmark::DoNotOptimize(sum);
   }
 }

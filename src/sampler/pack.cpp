@@ -39,21 +39,19 @@ CosineLookup lookup_of(const Partition& partition) {
 
 // Walker's alias table in integers (Vose 1991): `bucket` * count = sum(mass), so that every probability is
 // exact. The heaviest leaf first takes up what is missing to a multiple of the count.
-std::uint32_t make_alias_table(PackedLeaf* leaves, std::uint32_t count) {
+std::uint32_t make_alias_table(std::vector<std::uint32_t>& mass, PackedLeaf* leaves) {
+  const auto count = std::uint32_t(mass.size());
   std::uint64_t sum = 0;
   std::uint32_t heaviest = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    sum += leaves[i].mass;
-    if (leaves[i].mass > leaves[heaviest].mass) heaviest = i;
+    sum += mass[i];
+    if (mass[i] > mass[heaviest]) heaviest = i;
   }
   const std::uint64_t bucket = (sum + count - 1) / count;
-  leaves[heaviest].mass += std::uint32_t(bucket * count - sum);
-  std::vector<std::uint64_t> left(count);
+  mass[heaviest] += std::uint32_t(bucket * count - sum);
+  std::vector<std::uint64_t> left(mass.begin(), mass.end());
   std::vector<std::uint32_t> small, large;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    left[i] = leaves[i].mass;
-    (left[i] < bucket ? small : large).push_back(i);
-  }
+  for (std::uint32_t i = 0; i < count; ++i) (left[i] < bucket ? small : large).push_back(i);
   while (!small.empty() && !large.empty()) {
     const std::uint32_t s = small.back(), l = large.back();
     small.pop_back();
@@ -65,37 +63,38 @@ std::uint32_t make_alias_table(PackedLeaf* leaves, std::uint32_t count) {
       small.push_back(l);
     }
   }
-  for (const std::uint32_t i : large)
-    leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = std::uint16_t(i);
-  for (const std::uint32_t i : small)
-    leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = std::uint16_t(i);
+  for (const auto* rest : {&large, &small}) {
+    for (const std::uint32_t i : *rest)
+      leaves[i].threshold = std::uint32_t(bucket), leaves[i].alias = std::uint16_t(i);
+  }
   return std::uint32_t(bucket);
 }
 
-std::vector<PackedCell> packed_cells(const std::vector<Split>& nodes) {
-  std::vector<PackedCell> cells, stack{{1, 1}};
-  for (const Split split : nodes) {
-    const PackedCell c = stack.back();
+// Leaves in preorder with their cells and slopes.
+std::vector<PackedLeaf> packed_leaves(const Tree& tree) {
+  std::vector<PackedLeaf> leaves, stack{{}};
+  for (const Split split : tree.nodes) {
+    PackedLeaf c = stack.back();
     stack.pop_back();
     if (split == Split::leaf) {
-      cells.push_back(c);
+      c.slope_x = tree.slope_x[leaves.size()], c.slope_y = tree.slope_y[leaves.size()];
+      leaves.push_back(c);
       continue;
     }
-    PackedCell lower = c;
-    std::uint16_t& axis = split == Split::x ? lower.x : lower.y;
-    axis = std::uint16_t(axis << 1U);
-    PackedCell upper = lower;
-    ++(split == Split::x ? upper.x : upper.y);
+    const std::uint8_t level = ++(split == Split::x ? c.level_x : c.level_y);
+    PackedLeaf upper = c;
+    std::uint16_t& start = split == Split::x ? upper.x : upper.y;
+    start = std::uint16_t(start + (0x8000U >> level));
     stack.push_back(upper);
-    stack.push_back(lower);
+    stack.push_back(c);
   }
-  return cells;
+  return leaves;
 }
 
 // Appends the inner nodes of a subtree in preorder.
 struct DescentBuilder {
   const Tree& tree;
-  const PackedLeaf* leaves;
+  const std::vector<std::uint32_t>& mass;
   std::vector<DescentNode>& nodes;
   std::size_t next_node = 0;
   std::uint32_t next_leaf = 0;
@@ -106,7 +105,7 @@ struct DescentBuilder {
   };
   Subtree add() {
     const Split split = tree.nodes[next_node++];
-    if (split == Split::leaf) return {double(leaves[next_leaf++].mass), 1};
+    if (split == Split::leaf) return {double(mass[next_leaf++]), 1};
     const std::size_t at = nodes.size();
     nodes.emplace_back();
     const Subtree lower = add(), upper = add();
@@ -117,17 +116,25 @@ struct DescentBuilder {
   }
 };
 
-// Appends a slab with its leaves and alias table; slabs ascend in theta_o, the forest in the cosine.
-PackedSlab& append(const Tree& tree, PackedForest& forest) {
+// Appends a slab with its leaves and alias table; a leaf's height is unit * mass / area. Slabs ascend in
+// theta_o, the forest in the cosine. Returns the masses as the alias table has them.
+std::vector<std::uint32_t> append(const Tree& tree, double unit, PackedForest& forest) {
+  std::vector<PackedLeaf> leaves = packed_leaves(tree);
+  std::vector<std::uint32_t> mass = tree.mass;
   PackedSlab slab;
   slab.first = std::uint32_t(forest.leaves.size());
-  slab.count = std::uint32_t(tree.mass.size());
-  const std::vector<PackedCell> cells = packed_cells(tree.nodes);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    forest.leaves.push_back({0, tree.mass[i], 0, cells[i], tree.slope_x[i], tree.slope_y[i]});
+  slab.count = std::uint32_t(leaves.size());
+  slab.bucket = make_alias_table(mass, leaves.data());
+  if (!(unit > 0)) unit = 1 / (double(slab.bucket) * slab.count);  // one-shot: a density
+  double volume = 0;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    leaves[i].height = float(unit * mass[i] / double(area_of(leaves[i])));
+    volume += unit * mass[i];
   }
-  slab.bucket = make_alias_table(forest.leaves.data() + slab.first, slab.count);
-  return forest.slabs.emplace_back(slab);
+  slab.volume = float(volume);
+  forest.leaves.insert(forest.leaves.end(), leaves.begin(), leaves.end());
+  forest.slabs.push_back(slab);
+  return mass;
 }
 
 std::size_t bytes_of(const PackedForest& forest) {
@@ -153,14 +160,13 @@ PackedSampler pack(const SamplerData& data) {
   for (auto tree = data.exact.rbegin(); tree != data.exact.rend(); ++tree) {
     double sum = 0;
     for (const std::uint32_t m : tree->mass) sum += m;
-    append(*tree, packed.exact).unit = std::nextafter(float(double(tree->volume) / sum), 1e30f);
+    append(*tree, double(tree->volume) / sum, packed.exact);
   }
   packed.one_shot.lookup = lookup_of(data.one_shot_partition);
   for (auto tree = data.one_shot.rbegin(); tree != data.one_shot.rend(); ++tree) {
-    PackedSlab& slab = append(*tree, packed.one_shot);
-    slab.unit = float(1 / (double(slab.bucket) * slab.count));
-    slab.first_node = std::uint32_t(packed.one_shot.nodes.size());
-    DescentBuilder{*tree, packed.one_shot.leaves.data() + slab.first, packed.one_shot.nodes}.add();
+    const std::vector<std::uint32_t> mass = append(*tree, 0, packed.one_shot);
+    packed.one_shot.slabs.back().first_node = std::uint32_t(packed.one_shot.nodes.size());
+    DescentBuilder{*tree, mass, packed.one_shot.nodes}.add();
   }
   return packed;
 }
@@ -201,8 +207,7 @@ Located locate(const PackedSampler& packed, const PackedSlab& slab, Vec2<float> 
   const float gx = float(leaf->slope_x) / 128, gy = float(leaf->slope_y) / 128;
   const float tx = clamp((p.x - x0) / width, 0.f, 1.f), ty = clamp((p.y - y0) / height, 0.f, 1.f);
   Located at;
-  at.density = slab.unit * float(leaf->mass) * unpack(leaf->cell, packed.domain.half).inverse_area *
-               (1 + gx * (2 * tx - 1)) * (1 + gy * (2 * ty - 1));
+  at.density = point_at(*leaf, packed.domain.half, tx, ty).height;
   at.u1 = lo1 + size1 * double(linear_cdf(gx, tx));
   at.u2 = lo2 + size2 * double(linear_cdf(gy, ty));
   return at;

@@ -9,8 +9,10 @@
 // The hot path of sampling is one function to the optimiser: a call would pass its structs through memory.
 #if defined(__GNUC__) || defined(__clang__)
 #define REFLECTREE_INLINE [[gnu::always_inline]] inline
+#define REFLECTREE_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define REFLECTREE_INLINE inline
+#define REFLECTREE_INLINE_LAMBDA
 #endif
 
 namespace reflectree {

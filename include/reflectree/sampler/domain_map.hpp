@@ -96,12 +96,16 @@ REFLECTREE_INLINE float lower_azimuth(Direction w) {
 
 }  // namespace detail
 
-// wo = (sin theta_o, 0, cos theta_o); p in square coordinates (domain.hpp).
-REFLECTREE_INLINE DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p) {
+// wo = (sin theta_o, 0, cos theta_o); p in square coordinates (domain.hpp); `mirrored` turns wi.y around, the
+// coin of half domains.
+REFLECTREE_INLINE DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p, bool mirrored = false) {
   const Vec2<float> half_azimuth = detail::cos_sin_half(p.x);
   const float y = abs(p.y);
   // cos phi = sin(pi x / 2), sin phi = cos(pi x / 2), on the side of y.
-  const Vec2<float> azimuth{half_azimuth.y, p.y < 0 ? -half_azimuth.x : half_azimuth.x};
+  const std::uint32_t sign =
+      (std::bit_cast<std::uint32_t>(p.y) & 0x80000000U) ^ (std::uint32_t(mirrored) << 31U);
+  const Vec2<float> azimuth{half_azimuth.y,
+                            std::bit_cast<float>(std::bit_cast<std::uint32_t>(half_azimuth.x) ^ sign)};
   switch (domain.kind) {
     case DomainKind::half_vector:
       return detail::lift_half_vector(wo, azimuth, y, 1);
@@ -121,6 +125,28 @@ REFLECTREE_INLINE DomainPoint lift(const Domain& domain, Direction wo, Vec2<floa
       const float r = sqrt(1 - z * z);
       return {shading_geometry(wo, Direction{r * azimuth.x, r * azimuth.y, z}), 2 * pi * power * z * z / v};
     }
+  }
+}
+
+// Calls body(domain) with a kind that the compiler knows: the choice is made once, outside of a sample.
+template <class Body>
+REFLECTREE_INLINE auto with_known_kind(Domain domain, Body&& body) {
+  switch (domain.kind) {
+    case DomainKind::half_vector:
+      domain.kind = DomainKind::half_vector;
+      return body(domain);
+    case DomainKind::back_vector:
+      domain.kind = DomainKind::back_vector;
+      return body(domain);
+    case DomainKind::projected_disk:
+      domain.kind = DomainKind::projected_disk;
+      return body(domain);
+    case DomainKind::equal_area:
+      domain.kind = DomainKind::equal_area;
+      return body(domain);
+    default:
+      domain.kind = DomainKind::stretched;
+      return body(domain);
   }
 }
 

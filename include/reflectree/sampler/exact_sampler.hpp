@@ -34,12 +34,14 @@ class ExactSampler {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
-    for (int trial = 0; trial < max_trials; ++trial) {
-      const Candidate c = propose(slab, in, u);
-      if (accept(c, in, u, stats)) return finish(c, in);
-    }
-    stats.exhausted();
-    return std::nullopt;
+    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+      for (int trial = 0; trial < max_trials; ++trial) {
+        const Candidate c = propose(domain, slab, in, u);
+        if (accept(c, in, u, stats)) return std::optional(finish(c, in));
+      }
+      stats.exhausted();
+      return std::optional<DirectionSample<Value>>();
+    });
   }
 
   // Up to out.size() samples in one call; returns how many were filled (all, unless trials ran out). The
@@ -54,8 +56,8 @@ class ExactSampler {
     std::size_t filled = 0;
     for (int round = 0; round < max_trials && filled < out.size(); ++round) {
       detail::divide(slab, packed_->exact.leaves.data() + slab.first, out.size() - filled, u,
-                     [&](const PackedLeaf& leaf) {
-                       const Candidate c = place(slab, leaf, in, u);
+                     [&](const detail::ChosenLeaf& leaf) {
+                       const Candidate c = place(packed_->domain, leaf, in, u);
                        if (accept(c, in, u, stats)) out[filled++] = finish(c, in);
                      });
     }
@@ -71,10 +73,10 @@ class ExactSampler {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
-    const Candidate c = propose(slab, in, u);
+    const Candidate c = propose(packed_->domain, slab, in, u);
     if (!accept(c, in, u, NoStatistics{})) return std::nullopt;
     const float ratio = c.target / in.albedo;
-    const float density = min(ratio, c.majorant) / volume(slab);  // per share of the square
+    const float density = min(ratio, c.majorant) / slab.volume;  // per share of the square
     return DirectionSample<Value>{from_incidence(in, c.point.geometry.wi),
                                   density * c.point.geometry.cos_theta_i / c.point.projected_area,
                                   scaled(c.value, c.point.projected_area / density), sample_reflection};
@@ -98,7 +100,7 @@ class ExactSampler {
   float expected_trials(Direction wo) const {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return 0;
-    return volume(packed_->exact.slab_at(in.wo.z));
+    return packed_->exact.slab_at(in.wo.z).volume;
   }
 
  private:
@@ -109,23 +111,21 @@ class ExactSampler {
     float majorant;  // M q, of T / a
   };
 
-  static float volume(const PackedSlab& slab) { return slab.unit * float(slab.bucket) * float(slab.count); }
-
   template <RandomBits U>
-  REFLECTREE_INLINE Candidate propose(const PackedSlab& slab, const Incidence& in, U& u) const {
-    return place(
-        slab, detail::choose_leaf(slab, packed_->exact.leaves.data() + slab.first, detail::bits64(u)), in, u);
+  REFLECTREE_INLINE Candidate propose(const Domain& domain, const PackedSlab& slab, const Incidence& in,
+                                      U& u) const {
+    const PackedLeaf* leaves = packed_->exact.leaves.data() + slab.first;
+    return place(domain, detail::choose_leaf(slab, leaves, detail::bits64(u)), in, u);
   }
 
   template <RandomBits U>
-  REFLECTREE_INLINE Candidate place(const PackedSlab& slab, const PackedLeaf& leaf, const Incidence& in,
+  REFLECTREE_INLINE Candidate place(const Domain& domain, const detail::ChosenLeaf& leaf, const Incidence& in,
                                     U& u) const {
     bool coin;
-    const detail::PointInLeaf at = detail::place(slab, leaf, packed_->domain.half, u, coin);
+    const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
     Candidate c;
-    c.point = lift(packed_->domain, in.wo, at.p);
+    c.point = lift(domain, in.wo, at.p, domain.half && coin);
     c.majorant = at.height;
-    detail::mirror(c.point.geometry, packed_->domain.half && coin);
     c.value = eval(f_, c.point.geometry);
     c.target = packed_->target(c.value) * c.point.projected_area;
     return c;

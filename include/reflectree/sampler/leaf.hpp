@@ -2,25 +2,10 @@
 // One leaf at run time: choosing it, a point in it, the shape across it.
 #pragma once
 
-#include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
 
 namespace reflectree::detail {
-
-struct UnpackedCell {
-  float x0, y0, width, height, inverse_area;  // in square coordinates; 1 / share of the square
-};
-REFLECTREE_INLINE UnpackedCell unpack(PackedCell cell, bool half) {
-  const int level_x = int(std::bit_width(unsigned(cell.x))) - 1;  // unsigned in libc++ 14
-  const int level_y = int(std::bit_width(unsigned(cell.y))) - 1;
-  // 2^-level, exactly, by building the float's exponent.
-  const float wx = std::bit_cast<float>(std::uint32_t(128 - level_x) << 23U);
-  const float wy = std::bit_cast<float>(std::uint32_t((half ? 127 : 128) - level_y) << 23U);
-  const float y_min = half ? 0.f : -1.f;
-  return {-1 + float(cell.x - (1 << level_x)) * wx, y_min + float(cell.y - (1 << level_y)) * wy, wx, wy,
-          std::bit_cast<float>(std::uint32_t(127 + level_x + level_y) << 23U)};
-}
 
 // The high and low halves of a 64 x 64 bit product: chooses among n with a bias below 2^-64 n.
 struct Product {
@@ -46,13 +31,19 @@ REFLECTREE_INLINE std::uint64_t bits64(U& u) {
 }
 
 // A leaf in proportion to its mass, by the alias table (Walker 1977) in integers: no rounding bends it.
-REFLECTREE_INLINE const PackedLeaf& choose_leaf(const PackedSlab& slab, const PackedLeaf* leaves,
-                                                std::uint64_t random) {
+// `spare`: 64 random bits less what the choice used up, about 32 + log2(count); the high ones are good.
+struct ChosenLeaf {
+  const PackedLeaf& leaf;
+  std::uint64_t spare;
+};
+REFLECTREE_INLINE ChosenLeaf choose_leaf(const PackedSlab& slab, const PackedLeaf* leaves,
+                                         std::uint64_t random) {
   const Product bucket = multiply(random, slab.count);
   const PackedLeaf& leaf = leaves[bucket.high];
-  const std::uint64_t own =
-      std::uint64_t(0) - std::uint64_t(multiply(bucket.low, slab.bucket).high < leaf.threshold);
-  return leaves[(bucket.high & own) | (leaf.alias & ~own)];  // a branch would be a coin toss
+  const Product position = multiply(bucket.low, slab.bucket);
+  const std::uint64_t own = std::uint64_t(0) - std::uint64_t(position.high < leaf.threshold);
+  // A branch would be a coin toss.
+  return {leaves[(bucket.high & own) | (leaf.alias & ~own)], position.low};
 }
 
 // The inverse of the CDF of the density (1 + g s) / 2 on [-1, 1], returned as (s + 1) / 2 in [0, 1].
@@ -62,31 +53,36 @@ REFLECTREE_INLINE float sample_linear(float slope, float u) {
 }
 REFLECTREE_INLINE float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
 
+// 2^exponent, exactly, by building the float.
+REFLECTREE_INLINE float power_of_two(int exponent) {
+  return std::bit_cast<float>(std::uint32_t(127 + exponent) << 23U);
+}
+
 // A point of a leaf, and there majorant * q or density * q: per share of the square.
 struct PointInLeaf {
   Vec2<float> p;
   float height;
 };
-REFLECTREE_INLINE PointInLeaf point_at(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float tx,
-                                       float ty) {
-  const UnpackedCell cell = unpack(leaf.cell, half);
+// tx, ty in [0, 1] across the leaf.
+REFLECTREE_INLINE PointInLeaf point_at(const PackedLeaf& leaf, bool half, float tx, float ty) {
   const float gx = float(leaf.slope_x) * (1.f / 64),
               gy = float(leaf.slope_y) * (1.f / 64);  // twice the slopes
-  return {{cell.x0 + cell.width * tx, cell.y0 + cell.height * ty},
-          slab.unit * float(leaf.mass) * cell.inverse_area * ((1 - 0.5f * gx) + gx * tx) *
-              ((1 - 0.5f * gy) + gy * ty)};
+  // x = -1 + 2 (x0 + 2^-level tx); the sum with x0 comes last, where small cells keep their precision.
+  const float x = float(int(leaf.x) - 0x4000) * 0x1p-14f + power_of_two(1 - leaf.level_x) * tx;
+  const float y = half ? float(leaf.y) * 0x1p-15f + power_of_two(-leaf.level_y) * ty
+                       : float(int(leaf.y) - 0x4000) * 0x1p-14f + power_of_two(1 - leaf.level_y) * ty;
+  return {{x, y}, leaf.height * ((1 - 0.5f * gx) + gx * tx) * ((1 - 0.5f * gy) + gy * ty)};
 }
 
 // Drawn from the shape q by its inverse CDF: monotone in both uniforms.
-REFLECTREE_INLINE PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, float ux,
-                                    float uy) {
-  return point_at(slab, leaf, half, sample_linear(float(leaf.slope_x) / 128, ux),
+REFLECTREE_INLINE PointInLeaf place(const PackedLeaf& leaf, bool half, float ux, float uy) {
+  return point_at(leaf, half, sample_linear(float(leaf.slope_x) / 128, ux),
                   sample_linear(float(leaf.slope_y) / 128, uy));
 }
 
-// Drawn from 1 + g s, g = slope / 128, without root or division: with probability |g| the larger (or, for
-// g < 0, the smaller) of two uniforms, else the first. The probability is exact in 7 bits.
-REFLECTREE_INLINE float sample_linear(std::int8_t slope, std::uint32_t first, std::uint32_t second) {
+// Drawn from 1 + g s, g = slope / 128, without root or division: with probability |g|, exact in 7 bits, the
+// larger (for g < 0, the smaller) of two uniforms, else the first.
+REFLECTREE_INLINE float mix_linear(std::int8_t slope, std::uint32_t first, std::uint32_t second) {
   // In integers, whose minima, maxima and selections compile to no branch.
   const std::uint32_t a = first >> 8U, b = second >> 8U;
   const std::uint32_t low = a < b ? a : b, high = a ^ b ^ low;
@@ -96,34 +92,31 @@ REFLECTREE_INLINE float sample_linear(std::int8_t slope, std::uint32_t first, st
       std::uint32_t(0) - std::uint32_t(int(first & 127U) < (slope < 0 ? -int(slope) : int(slope)));
   return float(a ^ ((a ^ other) & mixed)) * 0x1p-24f;
 }
-// The same point from random bits; `coin` is a bit that the point does not use.
+// From 64 random bits and those that the choice of the leaf has to spare; `coin` is a bit left over. The
+// azimuth is wanted first and is mixed; the root of the radius hides behind it.
 template <RandomBits U>
-REFLECTREE_INLINE PointInLeaf place(const PackedSlab& slab, const PackedLeaf& leaf, bool half, U& u,
-                                    bool& coin) {
-  const std::uint32_t x0 = u(), x1 = u(), y0 = u(), y1 = u();
-  coin = x1 & 1U;
-  return point_at(slab, leaf, half, sample_linear(leaf.slope_x, x0, x1), sample_linear(leaf.slope_y, y0, y1));
-}
-
-// Half squares: the coin that chooses the sign of wi.y, without a branch.
-REFLECTREE_INLINE void mirror(ShadingGeometry<float>& g, bool negative) {
-  const std::uint32_t sign = std::uint32_t(negative) << 31U;
-  g.wi.y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(g.wi.y) ^ sign);
-  g.wh.y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(g.wh.y) ^ sign);
+REFLECTREE_INLINE PointInLeaf place(const ChosenLeaf& chosen, bool half, U& u, bool& coin) {
+  const std::uint32_t x = u(), y = u();
+  coin = y & 1U;
+  const float tx = mix_linear(chosen.leaf.slope_x, x, std::uint32_t(chosen.spare >> 32U));
+  return point_at(chosen.leaf, half, tx,
+                  sample_linear(float(chosen.leaf.slope_y) * (1.f / 128), to_unit_float(y)));
 }
 
 // Systematic division: visits n leaves in order, each as often as n equidistant points with a common random
 // offset fall into its share of the mass (n share, rounded up or down).
 template <RandomBits U, class Visit>
 void divide(const PackedSlab& slab, const PackedLeaf* leaves, std::size_t n, U& u, Visit&& visit) {
-  const double total = double(slab.bucket) * double(slab.count), step = total / double(n);
-  const double offset = to_unit_double(u()) * step;
-  double upper = double(leaves[0].mass);
+  const double step = double(slab.volume) / double(n), offset = to_unit_double(u()) * step;
+  const auto share = [leaves](std::uint32_t k) {
+    return double(leaves[k].height) * double(area_of(leaves[k]));
+  };
+  double upper = share(0);
   std::uint32_t i = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const double at = offset + double(k) * step;
-    while (at >= upper && i + 1 < slab.count) upper += double(leaves[++i].mass);
-    visit(leaves[i]);
+    while (at >= upper && i + 1 < slab.count) upper += share(++i);
+    visit(ChosenLeaf{leaves[i], bits64(u)});
   }
 }
 

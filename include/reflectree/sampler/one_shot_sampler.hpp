@@ -38,15 +38,17 @@ class OneShotSampler {
   const F& brdf() const { return f_; }
   const PackedSampler& packed() const { return *packed_; }
 
-  // By alias table, from 192 random bits.
+  // By alias table, from 128 random bits.
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u) const {
     Incidence in;
     if (!find_incidence(*packed_, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
-    const PackedLeaf& leaf =
+    const detail::ChosenLeaf leaf =
         detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
-    return sample_in(slab, leaf, in, u);
+    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+      return std::optional(sample_in(domain, leaf, in, u));
+    });
   }
 
   // out.size() samples in one call, divided among the leaves systematically; returns how many were filled
@@ -57,8 +59,9 @@ class OneShotSampler {
     if (out.empty() || !find_incidence(*packed_, wo, in)) return 0;
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
     std::size_t filled = 0;
-    detail::divide(slab, packed_->one_shot.leaves.data() + slab.first, out.size(), u,
-                   [&](const PackedLeaf& leaf) { out[filled++] = sample_in(slab, leaf, in, u); });
+    detail::divide(
+        slab, packed_->one_shot.leaves.data() + slab.first, out.size(), u,
+        [&](const detail::ChosenLeaf& leaf) { out[filled++] = sample_in(packed_->domain, leaf, in, u); });
     return filled;
   }
 
@@ -71,22 +74,26 @@ class OneShotSampler {
     if (half) u2 = below ? 1 - 2 * u2 : 2 * u2 - 1;  // continuous across the plane of incidence
     const DescentNode* node = packed_->one_shot.nodes.data() + slab.first_node;
     const PackedLeaf* leaf = packed_->one_shot.leaves.data() + slab.first;
+    // The share [lo, lo + size) of each uniform that leads here; axis 0 is x.
+    double lo[2] = {0, 0}, size[2] = {1, 1};
+    const double uniform[2] = {u1, u2};
     for (std::uint32_t leaves = slab.count; leaves > 1;) {
-      double& u = node->split_x ? u1 : u2;
-      const double lower = double(node->lower);
+      const std::size_t axis = 1 - node->split_x;
+      const double lower = size[axis] * double(node->lower);
       const std::uint32_t below_count = node->lower_leaves;
-      if (u < lower) {
-        u /= lower;
-        leaves = below_count;
-        ++node;
-      } else {
-        u = (u - lower) / (1 - lower);
-        leaves -= below_count;
-        leaf += below_count;
-        node += below_count;
-      }
+      const bool up = uniform[axis] >= lo[axis] + lower;
+      lo[axis] += up ? lower : 0;
+      size[axis] = up ? size[axis] - lower : lower;
+      leaves = up ? leaves - below_count : below_count;
+      leaf += up ? below_count : 0;
+      node += up ? below_count : 1;
     }
-    return finish(in, detail::place(slab, *leaf, half, min(float(u1), 1.f), min(float(u2), 1.f)), below);
+    u1 = (u1 - lo[0]) / size[0];
+    u2 = (u2 - lo[1]) / size[1];
+    const detail::PointInLeaf at = detail::place(*leaf, half, min(float(u1), 1.f), min(float(u2), 1.f));
+    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+      return std::optional(finish(domain, in, at, below));
+    });
   }
 
   // The uniforms that `sample(wo, u1, u2)` takes to wi, up to rounding; nullopt below the horizon.
@@ -118,18 +125,16 @@ class OneShotSampler {
 
  private:
   template <RandomBits U>
-  REFLECTREE_INLINE DirectionSample<Value> sample_in(const PackedSlab& slab, const PackedLeaf& leaf,
+  REFLECTREE_INLINE DirectionSample<Value> sample_in(const Domain& domain, const detail::ChosenLeaf& leaf,
                                                      const Incidence& in, U& u) const {
-    const bool half = packed_->domain.half;
     bool coin;
-    const detail::PointInLeaf at = detail::place(slab, leaf, half, u, coin);
-    return finish(in, at, half && coin);
+    const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
+    return finish(domain, in, at, domain.half && coin);
   }
 
-  REFLECTREE_INLINE DirectionSample<Value> finish(const Incidence& in, const detail::PointInLeaf& at,
-                                                  bool mirrored) const {
-    DomainPoint point = lift(packed_->domain, in.wo, at.p);
-    detail::mirror(point.geometry, mirrored);
+  REFLECTREE_INLINE DirectionSample<Value> finish(const Domain& domain, const Incidence& in,
+                                                  const detail::PointInLeaf& at, bool mirrored) const {
+    const DomainPoint point = lift(domain, in.wo, at.p, mirrored);
     const float pdf_disk = at.height / point.projected_area, inverse = point.projected_area / at.height;
     return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i,
             scaled(eval(f_, point.geometry), inverse), sample_reflection};

@@ -38,25 +38,27 @@ class CosineLookup {
   std::vector<std::uint16_t> guide_;
 };
 
-// A cell in 2 x 16 bits: (1 << level) + index per axis.
-struct PackedCell {
-  std::uint16_t x = 1, y = 1;
-};
-
+// One leaf. Its cell starts at (x, y) / 2^15 of the root square and is 2^-level of it wide and high.
 struct PackedLeaf {
-  std::uint32_t threshold;  // of the alias table's bucket with this index
-  std::uint32_t mass;
-  std::uint16_t alias;
-  PackedCell cell;
-  std::int8_t slope_x, slope_y;
+  std::uint32_t threshold = 0;  // of the alias table's bucket with this index
+  float height = 0;             // majorant or density, per share of the square
+  std::uint16_t alias = 0;
+  std::uint16_t x = 0, y = 0;
+  std::uint8_t level_x = 0, level_y = 0;
+  std::int8_t slope_x = 0, slope_y = 0;
 };
-static_assert(sizeof(PackedLeaf) == 16);
+static_assert(sizeof(PackedLeaf) == 20);
+
+// The leaf's share of the square.
+inline float area_of(const PackedLeaf& leaf) {
+  return std::bit_cast<float>(std::uint32_t(127 - leaf.level_x - leaf.level_y) << 23U);
+}
 
 struct PackedSlab {
   std::uint32_t first = 0, count = 0;  // leaves
   std::uint32_t first_node = 0;
   std::uint32_t bucket = 0;  // capacity of each bucket of the alias table
-  float unit = 0;            // majorant or density = unit * mass / area
+  float volume = 0;          // sum of height * area: expected trials, or 1
 };
 
 // An inner node of a tree in preorder, without pointers: the subtree of `lower_leaves` leaves below has
