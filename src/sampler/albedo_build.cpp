@@ -135,7 +135,7 @@ void advance(Integral& integral, double relative_error) {
   });
   double sum = 0, held = 0;
   for (const Region& r : integral.regions) sum += r.error;
-  const double surplus = sum * (1 - 0.5 * allowed / integral.error);
+  const double surplus = sum * (1 - 0.9 * allowed / integral.error);
   std::vector<Region> next;
   std::size_t count = 0;
   const double smallest = 0.02 * integral.regions[order[0]].error;
@@ -174,9 +174,12 @@ std::vector<double> integrate(const Field& field, const std::vector<float>& cosi
   }
   std::vector<FieldPoint> points;
   std::vector<FieldValue> values;
+  std::vector<std::size_t> first(integrals.size());  // of each integral's points
   for (bool busy = true; busy;) {
     points.clear();
-    for (const Integral& integral : integrals) {
+    for (std::size_t i = 0; i < integrals.size(); ++i) {
+      const Integral& integral = integrals[i];
+      first[i] = points.size();
       if (integral.done) continue;
       for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r) {
         const Region& region = integral.regions[r];
@@ -190,16 +193,18 @@ std::vector<double> integrate(const Field& field, const std::vector<float>& cosi
     values.resize(points.size());
     eval_in_parallel(field, host, points, values);
     *evaluations += points.size();
-    const FieldValue* v = values.data();
-    busy = false;
-    for (Integral& integral : integrals) {
-      if (integral.done) continue;
-      for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r, v += rule_size) {
-        apply_rule(integral.regions[r], v, area);
+    host.parallel_for(integrals.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Integral& integral = integrals[i];
+        if (integral.done) continue;
+        const FieldValue* v = values.data() + first[i];
+        for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r, v += rule_size) {
+          apply_rule(integral.regions[r], v, area);
+        }
+        advance(integral, relative_error);
       }
-      advance(integral, relative_error);
-      busy = busy || !integral.done;
-    }
+    });
+    busy = std::any_of(integrals.begin(), integrals.end(), [](const Integral& i) { return !i.done; });
   }
   std::vector<double> result;
   for (const Integral& integral : integrals) result.push_back(integral.value);
@@ -250,7 +255,7 @@ void tabulate(const Panel& panel, const std::array<double, 5>& v, double t0, dou
 
 AlbedoTable build_albedo(const Field& field, float relative_error, const Host& host,
                          std::uint64_t* evaluations) {
-  const double cubature_error = 0.2 * double(relative_error),
+  const double cubature_error = 0.25 * double(relative_error),
                interpolation_error = 0.15 * double(relative_error);
   // Panels of at most 7.5 degrees, and octaves towards the horizon.
   std::vector<double> borders;
