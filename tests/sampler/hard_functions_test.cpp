@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Functions that tempt a builder to be wrong: needles where nobody looks, no mirror symmetry, values without
+// bound at the rim.
+#include <gtest/gtest.h>
+
+#include "functions.hpp"
+#include "majorant_field.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/verify/attack.hpp"
+#include "reflectree/verify/reciprocity.hpp"
+
+namespace reflectree {
+namespace {
+
+template <class F>
+void expect_right(const Sampler<F>& s, const AnyBrdf& f, std::initializer_list<double> elevations,
+                  const std::string& what) {
+  for (const double theta : elevations) {
+    const auto results = judge(s, target_function(f), wo_at(theta, 1));
+    EXPECT_TRUE(all_passed(results)) << what << " theta_o " << theta << '\n' << to_text(results);
+  }
+}
+
+TEST(Asymmetry, SlightlyAndStronglyLopsidedFunctions) {
+  for (const float amount : {0.001f, 0.05f, 0.9f}) {
+    const AnyBrdf f = Lopsided{amount};
+    const SamplerData data = build(f);
+    EXPECT_NEAR(data.report.asymmetry / amount, 0.5, 0.4) << amount;
+    EXPECT_EQ(data.domain.half, data.report.asymmetry < 0.2f);
+    expect_right(make_sampler(f, data), f, {0, 30, 80}, "lopsided " + std::to_string(amount));
+  }
+}
+
+// A bump away from every landmark, on one side of the plane of incidence.
+TEST(Needle, OffTheLandmarksIsFoundAndSampled) {
+  for (const float width : {0.1f, 0.05f}) {
+    const AnyBrdf f = Bump{0.7f, 1.9f, width, 2 / width};
+    const SamplerData data = build(f);
+    const auto s = make_sampler(f, data);
+    expect_right(s, f, {0.5, 40, 75}, "bump " + std::to_string(width));
+    Pcg32 u(1);
+    SampleStatistics statistics;
+    for (int i = 0; i < 500'000; ++i) s.exact.sample(wo_at(89 * to_unit_double(u())), u, statistics);
+    EXPECT_LT(statistics.overshoot_sum / double(statistics.trials), 1e-5) << width;
+  }
+}
+
+// So narrow that every probe may miss it: then exact mode is wrong there, and says so through its counter,
+// while the mean of one-shot mode stays right, at a higher variance.
+TEST(Needle, MissedByTheBuilderLeavesOneShotUnbiased) {
+  const Bump bump{0.7f, 1.9f, 0.05f, 20};
+  // Built before the needle was there: the worst that a builder can do.
+  const AnyBrdf matt = Bump{0.7f, 1.9f, 0.05f, 0}, f = bump;
+  SamplerData data = build(matt);
+  data.probes = probe_identity(f, {});
+  const auto s = make_sampler(f, data);
+  const TargetFunction target = target_function(f);
+  const Direction wo = wo_at(40);
+  ChiSquareOptions options;
+  options.samples = 1'000'000;
+  const Bins bins = equal_mass_bins(target, wo);
+  const Tally one_shot = tally_of(erase(s.one_shot), bins, options);
+  EXPECT_TRUE(check_mean_weight(one_shot, bins, options).passed)
+      << to_line(check_mean_weight(one_shot, bins, options));
+  EXPECT_TRUE(check_weights(one_shot, bins, options).passed)
+      << to_line(check_weights(one_shot, bins, options));
+  EXPECT_FALSE(check_counts(tally_of(erase(s.exact), bins, options), bins, options).passed);
+  Pcg32 u(2);
+  SampleStatistics statistics;
+  for (int i = 0; i < 100'000; ++i) s.exact.sample(wo, u, statistics);
+  EXPECT_GT(statistics.overshoots, 0u);
+  EXPECT_GT(statistics.worst_overshoot, 5);
+  // One trial is the referee even here.
+  double sum = 0, square = 0;
+  const int n = 1'000'000;
+  for (int i = 0; i < n; ++i) {
+    const auto once = s.exact.sample_once(wo, u);
+    const double w = once ? double(Target{}(once->weight)) : 0;
+    sum += w, square += w * w;
+  }
+  const double mean = sum / n, error = std::sqrt((square / n - mean * mean) / n);
+  EXPECT_NEAR(mean, bins.total, 4.5 * error);
+  // And the attack finds the needle without being told where it is.
+  const MajorantField field(data, f);
+  EXPECT_GT(attack(field.ratio_function()).worst, 5);
+}
+
+TEST(Needle, RetroReflection) {
+  const AnyBrdf f = material("0.3*lambert + 0.7*retro_reflector:alpha=0.01");
+  expect_right(make_sampler(f), f, {0, 35, 80}, "retro");
+}
+
+// f grows without bound as wi approaches the horizon. The albedo is finite in all three.
+struct Phong1975 {
+  float operator()(Direction wo, Direction wi) const {
+    const float c = max(wo.z * wi.z - wo.x * wi.x - wo.y * wi.y, 0.f);
+    return (0.1f + pow(c, 20.f)) / wi.z;
+  }
+};
+struct Minnaert {
+  float operator()(Direction wo, Direction wi) const { return 0.2f * pow(wo.z * wi.z, -0.5f); }
+};
+struct Rpv {
+  float operator()(Direction wo, Direction wi) const { return 0.05f * pow(wo.z * wi.z, -1.3f); }
+};
+
+TEST(Rim, UnboundedFunctionsAreSampledOrRefused) {
+  const auto judged = [](const char* name, const AnyBrdf& f) {
+    try {
+      const SamplerData data = build(f);
+      EXPECT_NE(data.domain.kind, DomainKind::projected_disk) << name;
+      const auto s = make_sampler(f, data);
+      expect_right(s, f, {0, 45, 85}, name);
+      Pcg32 u(1);
+      for (int i = 0; i < 100; ++i) {
+        EXPECT_LE(s.exact.expected_trials(wo_at(89.99 * to_unit_double(u()))), 1.2501f) << name;
+      }
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("wi = ("), std::string::npos) << name << ": " << e.what();
+    }
+  };
+  judged("phong 1975", Phong1975{});
+  judged("minnaert", Minnaert{});
+  judged("rpv", Rpv{});
+}
+
+// The attack finds nothing to speak of above the bounds of ordinary functions, and a halved bound at once.
+TEST(Attack, BoundsOfABuildHoldAndHalvedOnesDoNot) {
+  const AnyBrdf f = material("plastic:alpha=0.2");
+  SamplerData data = build(f);
+  const MajorantField field(data, f);
+  const AttackResult sound = attack(field.ratio_function());
+  EXPECT_LT(sound.worst, 1.5);
+  EXPECT_GT(sound.worst, 0.9);
+  for (MajorantTree& tree : data.exact) tree.volume /= 2;
+  const AttackResult halved = attack(MajorantField(data, f).ratio_function());
+  EXPECT_GT(halved.worst, 1.8);
+  EXPECT_GT(halved.overshoots, 1000u);
+}
+
+}  // namespace
+}  // namespace reflectree
