@@ -119,7 +119,7 @@ double volume(const Slab& slab) {
 std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const AlbedoTable& albedo,
                               const BuildOptions& options, const Host& host, BuildReport& report) {
   constexpr float accepted_overshoot = 2e-7f;
-  constexpr int max_passes = 8;
+  constexpr int max_passes = 6;
   const float spare = 0.96f;  // of the budget: the attack will use the rest
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   grow(slabs, field, albedo, rules, host, &report.evaluations);
@@ -127,7 +127,7 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
   std::vector<std::size_t> first_new(slabs.size(), 0);
   for (int pass = 0; pass < max_passes; ++pass) {
     maximise(slabs, first_new, field, albedo, host, &report.evaluations);
-    const float per_leaf = clamp(1.5e6f / float(leaf_count(slabs)), 150.f, 20000.f);
+    const float per_leaf = clamp(1.5e6f / float(leaf_count(slabs)), 400.f, 20000.f);
     report.overshoot_mass = probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), field,
                                   albedo, host, &report.evaluations);
     bool dear = false;
@@ -135,11 +135,11 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
       first_new[s] = slabs[s].nodes.size();
       dear = dear || volume(slabs[s]) > double(options.expected_trials);
     }
-    if (dear) {
-      rules.goal -= 0.02f * (options.expected_trials - 1);
+    if (!dear && report.overshoot_mass <= accepted_overshoot) break;
+    if (dear && pass + 1 < max_passes) {  // what grows last is attacked, too
+      rules.goal -= 0.06f * (options.expected_trials - 1);
       grow(slabs, field, albedo, rules, host, &report.evaluations);
     }
-    if (!dear && report.overshoot_mass <= accepted_overshoot) break;
   }
   for (const Slab& slab : slabs) report.expected_trials = max(report.expected_trials, float(volume(slab)));
   return slabs;

@@ -181,7 +181,7 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
   }
   flush();
   climb(climbers, 6, field, albedo, host, evaluations);
-  for (const Climber& c : climbers) raise(c, c.value + 0.5f * (c.value - c.leaf->share) + margin * c.value);
+  for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->share + margin * c.value);
   return float(*std::max_element(overshoot.begin(), overshoot.end()));
 }
 
