@@ -7,16 +7,24 @@
 #include <filesystem>
 
 #include "reflectree/brdf/number_text.hpp"
+#include "reflectree/error.hpp"
 
 namespace reflectree::cli {
 
-void Context::print(const std::string& text) const { fmt::print("{}", text); }
+void Context::print(const std::string& text) const {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) finish_output();
+}
+
+void finish_output() {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
+  throw Error("writing failed", "stdout", "check that the disk has space left");
+}
 
 void Context::print_json(const std::string& command, const Json& result) const {
   Json whole{{"schema_version", schema_version}, {"command", command}};
   whole.update(result);
   // A damaged name must not turn a result into an exception: bytes that are not UTF-8 are replaced.
-  fmt::print("{}\n", whole.dump(2, ' ', false, Json::error_handler_t::replace));
+  print(whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void Context::say(const std::string& line) const {

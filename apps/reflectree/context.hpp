@@ -44,6 +44,9 @@ struct Context {
   Host host(const std::string& label) const;
 };
 
+// Throws Error if stdout could not take all that was printed.
+void finish_output();
+
 // The double that prints with as few digits as the float needs.
 double shortest(float x);
 

@@ -169,9 +169,8 @@ void add_demo(CLI::App& app, Context& context, Run& run) {
   };
   auto o = std::make_shared<Options>();
   command
-      ->add_option(
-          "MATERIAL", o->materials,
-          "Materials or files; nothing: models, tables made on the spot, and RGL files of the data folder")
+      ->add_option("MATERIAL", o->materials,
+                   "Materials or files; nothing: a choice of models and, from the data folder, RGL files")
       ->type_name("");
   command->add_option("-o,--output", o->output, "The folder to write: a page, and every sampler")
       ->type_name("FOLDER")

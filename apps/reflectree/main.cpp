@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dispatches to a subcommand and translates exceptions to exit codes, once.
+#include <algorithm>
 #include <cstdlib>
 #include <new>
-#include <thread>
+#include <span>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "reflectree/brdf/edit_distance.hpp"
 #include "reflectree/error.hpp"
 
 namespace {
@@ -32,7 +34,10 @@ void add_globals(CLI::App& app, Context& context) {
   app.add_flag("--json", context.json, "Results as JSON, with a schema_version");
   app.add_flag("-q,--quiet", context.quiet, "No words on stderr but errors");
   app.add_flag("-v,--verbose", context.verbose, "More words on stderr");
-  app.add_option("--seed", context.seed, "Seed of all random numbers")->capture_default_str()->type_name("N");
+  app.add_option("--seed", context.seed, "Seed of all random numbers")
+      ->check([](const std::string& text) { return text[0] == '-' ? "a seed is not negative" : ""; })
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--threads", context.threads,
                  "Threads, at most 1024; 0: one a core. Results do not depend on it")
       ->check(CLI::Range(0, 1024).description(""))
@@ -43,10 +48,25 @@ void add_globals(CLI::App& app, Context& context) {
       ->type_name("FOLDER");
 }
 
+// The subcommand that is written most like `word`.
+std::string nearest_subcommand(const CLI::App& app, const std::string& word) {
+  const auto all = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto nearest = std::min_element(all.begin(), all.end(), [&](const CLI::App* a, const CLI::App* b) {
+    return edit_distance(word, a->get_name()) < edit_distance(word, b->get_name());
+  });
+  return (*nearest)->get_name();
+}
+
 // The words of CLI11 in the form of every other error: what, where, how.
-int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+int usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<char* const> words) {
   std::string where = "reflectree";
   for (const CLI::App* sub : app.get_subcommands()) where += " " + sub->get_name();
+  if (app.get_subcommands().empty() && words.size() > 1 && words[1][0] != '-') {
+    const std::string word = words[1];
+    fmt::print(stderr, "error: reflectree: no subcommand '{}'; did you mean '{}'? see reflectree --help\n",
+               word, nearest_subcommand(app, word));
+    return exit_bad_input;
+  }
   std::string what = error.what();
   for (char& c : what) {
     if (c == '\n') c = ' ';
@@ -74,10 +94,12 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    return usage_error(app, error);
+    return usage_error(app, error, {argv, std::size_t(argc)});
   }
   watch_for_interrupt();
-  return run();
+  const int code = run();
+  finish_output();
+  return code;
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ void add_build_choices(CLI::App& command, BuildChoices& choices) {
   option("--target", choices.target, "WORD",
          "What is sampled, of the channels: norm, luminance, maximum, channel:K");
   option("--domain", choices.domain, "WORD",
-         "Map of the tree's square: auto, projected_disk, equal_area, half_vector, back_vector, stretched:A");
+         "Map of the square: auto, projected_disk, equal_area, half_vector, back_vector, stretched:A");
 }
 
 BuildOptions build_options(const Context& context, const BuildChoices& choices) {

@@ -98,27 +98,27 @@ void add_verify(CLI::App& app, Context& context, Run& run) {
   command->add_option("--theta-o-deg", o->theta_o_deg, "Elevations of wo from the normal")
       ->type_name("DEG,...")
       ->capture_default_str();
-  command->add_option("--samples", o->samples, "Directions for each wo and mode, at least 10000")
-      ->check(CLI::Range(std::uint64_t(10'000), std::uint64_t(1'000'000'000)).description(""))
+  command->add_option("--samples", o->samples, "Directions for each wo and mode, at least 100000")
+      ->check(CLI::Range(std::uint64_t(100'000), std::uint64_t(1'000'000'000)).description(""))
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option(
-          "--bound-trials", o->trials,
-          "Trials in search of values above their bounds, at least 10000; n of them show a mass of 4/n")
+      ->add_option("--bound-trials", o->trials,
+                   "Trials in search of overshoots, at least 10000; n of them show a mass of 4/n")
       ->check(CLI::Range(std::uint64_t(10'000), std::uint64_t(10'000'000'000)).description(""))
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--plant", o->plant, "Plant a fault, to see it caught: " + fault_list())
+  command->add_option("--plant", o->plant, "Plant a fault, to see it caught; FAULT is one of those below")
       ->check(CLI::IsMember(fault_names()).description(""))
       ->type_name("FAULT")
       ->capture_default_str();
   add_build_choices(*command, o->choices);
-  command->footer(
-      "Examples:\n"
-      "  reflectree verify gold.rfl\n"
-      "  reflectree verify ggx:alpha=0.1 --theta-o-deg 0,45,89 --plant bent\n"
-      "Checks that hold are summed up where they are many; -v shows each.");
+  command->footer("Faults: " + fault_list() +
+                  "\n"
+                  "Examples:\n"
+                  "  reflectree verify gold.rfl\n"
+                  "  reflectree verify ggx:alpha=0.1 --theta-o-deg 0,45,89 --plant bent\n"
+                  "Checks that hold are summed up where they are many; -v shows each.");
   command->callback([&context, &run, o] { run = [&context, o] { return run_verify(context, *o); }; });
 }
 

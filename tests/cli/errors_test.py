@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every way to go wrong: exit code 2, nothing on stdout, one line with what, where and how to mend it."""
+import struct
+import unittest
+import zlib
+
+from program import ProgramTest
+
+
+def chunks(file):
+    """(tag, start of payload, length) of each chunk of a sampler file."""
+    at = 8
+    while at < len(file) - 4:
+        length = struct.unpack_from("<Q", file, at + 8)[0]
+        yield file[at:at + 4], at + 16, length
+        at += 16 + length
+
+
+def with_material(file, text):
+    """The sampler file with another material's text, and a right checksum."""
+    text = text.encode()
+    payload = struct.pack("<I", len(text)) + text
+    for tag, start, length in chunks(file):
+        if tag == b"MATL":
+            body = file[:start - 8] + struct.pack("<Q", len(payload)) + payload + file[start + length:-4]
+            return body + struct.pack("<I", zlib.crc32(body))
+    raise ValueError("no chunk MATL")
+
+
+class Errors(ProgramTest):
+    def assert_error(self, expected, *args):
+        out, words = self.run_program(*args, code=2)
+        self.assertEqual(out, "", args)
+        self.assertEqual(words.count("\n"), 1, words)
+        self.assertTrue(words.startswith("error: "), words)
+        self.assertIn("; ", words, "how to mend it")
+        self.assertIn(expected, words)
+
+    def test_usage(self):
+        self.assert_error("subcommand is required")
+        self.assert_error("did you mean 'info'", "inof", "lambert")
+        self.assert_error("reflectree info: SAMPLER is required", "info")
+        self.assert_error("--output is required", "build", "lambert")
+        self.assert_error("--frob", "list", "--frob")
+        self.assert_error("extra", "info", "lambert", "extra")
+        self.assert_error("not negative", "info", "lambert", "--seed", "-1")
+        self.assert_error("--threads", "info", "lambert", "--threads", "-1")
+        self.assert_error("--threads", "info", "lambert", "--threads", "many")
+        self.assert_error("--count", "sample", "lambert", "-n", "0")
+        self.assert_error("--mode", "sample", "lambert", "--mode", "fast")
+        self.assert_error("--plant", "verify", "lambert", "--plant", "bug")
+
+    def test_values(self):
+        self.assert_error("90 is not above the surface", "sample", "lambert", "--theta-o-deg", "90")
+        self.assert_error("no list of elevations", "draw", "lambert", "--theta-o-deg", "10,x", "-o", "a")
+        self.assert_error("no list of elevations", "verify", "lambert", "--theta-o-deg", "")
+        self.assert_error("--trials", "info", "lambert", "--trials", "1")
+        self.assert_error("--variance", "info", "lambert", "--variance", "0")
+        self.assert_error("no target 'blue'", "info", "lambert", "--target", "blue")
+        self.assert_error("no channel 3: the material has 3", "info", "lambert", "--target", "channel:3")
+        self.assert_error("no target 'channel:-1'", "info", "lambert", "--target", "channel:-1")
+        self.assert_error("no domain 'round'", "info", "lambert", "--domain", "round")
+        self.assert_error("no exponent", "info", "lambert", "--domain", "stretched:2")
+
+    def test_materials(self):
+        self.assert_error("did you mean 'ggx'", "info", "gggx")
+        self.assert_error("unknown parameter 'alpa'", "info", "ggx:alpa=1")
+        self.assert_error("out of range", "info", "ggx:alpha=9")
+        self.assert_error("expected a number", "info", "lambert:rho=nan")
+        self.assert_error("weight out of range", "info", "1e30*lambert")
+        self.assert_error("expected a model or a file", "list", "0.3*")
+        self.assert_error("anisotropic", "info", "ward:alpha_x=.1,alpha_y=.3")
+
+    def test_files(self):
+        self.assert_error("missing.bsdf: no such file", "info", "missing.bsdf")
+        self.assert_error("is a directory", "info", "./")
+        self.write("empty.bsdf", b"")
+        self.assert_error("empty.bsdf: empty", "info", "empty.bsdf")
+        self.write("foreign.bsdf", b"\x89PNG\r\n\x1a\n" + b"x" * 1000)
+        self.assert_error("foreign.bsdf: not a material", "info", "foreign.bsdf")
+        self.write("cut.bsdf", b"tensor_file\0\1\0")
+        self.assert_error("cut.bsdf", "verify", "cut.bsdf")
+
+    def test_outputs(self):
+        self.assert_error("no such folder", "build", "lambert", "-o", "nowhere/l.rfl")
+        self.assert_error("is a folder", "build", "lambert", "-o", ".")
+        self.assert_error("nowhere/l.csv", "sample", "lambert", "-o", "nowhere/l.csv")
+        self.write("file", b"")
+        self.assert_error("the folder cannot be made", "demo", "lambert", "-o", "file")
+
+    def test_samplers(self):
+        self.run_program("build", "lambert", "-o", "l.rfl")
+        file = (self.folder / "l.rfl").read_bytes()
+        self.write("cut.rfl", file[:len(file) // 2])
+        self.assert_error("checksum", "info", "cut.rfl")
+        flipped = bytearray(file)
+        flipped[len(file) // 2] ^= 1
+        self.write("flipped.rfl", flipped)
+        self.assert_error("checksum", "sample", "flipped.rfl")
+        self.write("other.rfl", with_material(file, "lambert:rho=0.6"))
+        self.assert_error("built for another BRDF", "info", "other.rfl")
+        self.write("lost.rfl", with_material(file, "lost.bsdf"))
+        self.assert_error("lost.bsdf: no such file", "draw", "lost.rfl", "-o", "a.svg")
+        self.assert_error("options of building", "info", "l.rfl", "--trials", "2")
+        self.assert_error("is a sampler", "bake", "l.rfl", "-o", "l.binary")
+        self.assert_error("is a sampler already", "build", "l.rfl", "-o", "m.rfl")
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
+                         ["cut.rfl", "flipped.rfl", "l.rfl", "lost.rfl", "other.rfl"])
+
+    def test_a_copy_with_the_same_material_is_accepted(self):
+        # The twin of "other" and "lost": it is the material that is refused there.
+        self.run_program("build", "lambert", "-o", "l.rfl")
+        file = (self.folder / "l.rfl").read_bytes()
+        self.write("same.rfl", with_material(file, "lambert:rho=0.5"))
+        self.run_program("info", "same.rfl")
+
+    def test_the_demo_finds_typing_errors_first(self):
+        self.assert_error("did you mean", "demo", "lambert", "gggx")
+        self.assertFalse((self.folder / "reflectree-demo").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

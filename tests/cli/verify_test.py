@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A good sampler passes every check; each planted fault is caught by one; threads do not matter."""
+import unittest
+
+from program import ProgramTest
+
+QUICK = ["--theta-o-deg", "45", "--bound-trials", "1000000"]
+
+
+class Verify(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.run_program("build", "ggx:alpha=0.3", "-o", "g.rfl")
+
+    def test_good_samplers_pass(self):
+        for subject in ("g.rfl", "lambert", "retro_reflector"):
+            result = self.json_of("verify", subject, *QUICK)
+            self.assertTrue(result["passed"])
+            names = {check["name"] for check in result["checks"]}
+            self.assertLessEqual({"chi_square", "chi_square_pdf", "chi_square_weights", "mean_weight", "pdf_agrees",
+                                  "weight_agrees", "support", "alive", "finite", "pdf_integral", "albedo_table",
+                                  "sample_once", "overshoot_mass", "isotropy"}, names)
+
+    def test_planted_faults_are_caught(self):
+        caught_by = {"bent": "chi_square", "halved-bound": "overshoot_mass", "swapped-pdf": "pdf_agrees",
+                     "lost-support": "chi_square", "scaled-pdf": "pdf_integral", "scaled-weight": "mean_weight",
+                     "dying": "alive"}
+        for fault, name in caught_by.items():
+            result = self.json_of("verify", "g.rfl", "--plant", fault, *QUICK, code=1)
+            failed = {check["name"] for check in result["checks"] if not check["passed"]}
+            self.assertIn(name, failed, fault)
+
+    def test_lines_say_what_failed(self):
+        out, _ = self.run_program("verify", "g.rfl", "--plant", "dying", *QUICK, code=1)
+        self.assertRegex(out, r"(?m)^  FAIL  alive ")
+        self.assertRegex(out, r"(?m)^  pass  albedo_table ")
+        self.assertRegex(out.splitlines()[-1], r"^FAIL  \d+ checks hold, \d+ fail, with the planted fault 'dying'$")
+
+    def test_threads_do_not_matter(self):
+        results = [self.json_of("verify", "g.rfl", "--threads", n, *QUICK) for n in (1, 2)]
+        self.assertEqual(results[0], results[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
