@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# A room is a static library with a folder in include/ and one in src/; the arrows between rooms are
+# A room is a static library (without SOURCES: headers alone) with a folder in include/ and one in src/; the arrows between rooms are
 # math <- brdf <- sampler <- everything else, kept by tests/guard/layers.py.
 #
 # reflectree_room(name SOURCES a.cpp ... USES reflectree::math ... PRIVATE PNG::PNG ...)
@@ -10,14 +10,20 @@ include(GNUInstallDirs)
 function(reflectree_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE" ${ARGN})
   set(target reflectree_${name})
-  add_library(${target} STATIC ${ROOM_SOURCES})
+  if(ROOM_SOURCES)
+    set(public PUBLIC)
+    add_library(${target} STATIC ${ROOM_SOURCES})
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:reflectree_options> ${ROOM_PRIVATE})
+  else()
+    set(public INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
   add_library(reflectree::${name} ALIAS ${target})
-  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_features(${target} ${public} cxx_std_20)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(${target} PUBLIC
+  target_include_directories(${target} ${public}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(${target} PUBLIC ${ROOM_USES}
-                        PRIVATE $<BUILD_INTERFACE:reflectree_options> ${ROOM_PRIVATE})
+  target_link_libraries(${target} ${public} ${ROOM_USES})
 
   set(rooms "")
   set(packages "")

@@ -9,6 +9,7 @@
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/math/low_discrepancy.hpp"
 #include "reflectree/sampler/sampler.hpp"
+#include "reflectree/simd/sample_batch.hpp"
 
 namespace {
 
@@ -85,6 +86,48 @@ void one_shot_monotone(benchmark::State& state) {
   });
 }
 BENCHMARK(one_shot_monotone)->Arg(300)->Arg(100)->Arg(10);
+
+// 256 directions a call; the time is that of the call, items_per_second counts directions.
+constexpr std::size_t batch_size = 256;
+template <class Draw>
+void run_batches(benchmark::State& state, Draw&& draw) {
+  const std::vector<Direction>& wo = pool();
+  std::vector<DirectionSample<Rgb>> out(batch_size);
+  Pcg32 u(1);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    draw(std::span(wo).subspan(i, batch_size), u, std::span(out));
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+    i = (i + batch_size) & 4095U;
+  }
+  state.SetItemsProcessed(std::int64_t(state.iterations() * batch_size));
+}
+
+void exact_batch(benchmark::State& state) {
+  const auto& sampler = ggx(float(state.range(0)) * 1e-3f).exact;
+  run_batches(state, [&](auto wo, Pcg32& u, auto out) { sample_batch(sampler, wo, u, out); });
+}
+BENCHMARK(exact_batch)->Arg(300)->Arg(100)->Arg(10);
+
+void one_shot_alias_batch(benchmark::State& state) {
+  const auto& sampler = ggx(float(state.range(0)) * 1e-3f).one_shot;
+  run_batches(state, [&](auto wo, Pcg32& u, auto out) { sample_batch(sampler, wo, u, out); });
+}
+BENCHMARK(one_shot_alias_batch)->Arg(300)->Arg(100)->Arg(10);
+
+void one_shot_monotone_batch(benchmark::State& state) {
+  const auto& sampler = ggx(float(state.range(0)) * 1e-3f).one_shot;
+  run_batches(state, [&](auto wo, Pcg32& u, auto out) {
+    Vec2<double> points[batch_size];
+    for (Vec2<double>& p : points) {
+      p.x = to_unit_double(u());
+      p.y = to_unit_double(u());
+    }
+    sample_batch(sampler, wo, std::span<const Vec2<double>>(points), out);
+  });
+}
+BENCHMARK(one_shot_monotone_batch)->Arg(300)->Arg(100)->Arg(10);
 
 void exact_pdf(benchmark::State& state) {
   const auto& sampler = ggx(0.1f).exact;

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Keeps the arrows between the rooms by reading every #include.
 
-    math <- brdf <- sampler <- io, verify, draw, peers, render, apps, bindings
+    math <- brdf <- sampler <- simd, io, verify, draw, peers, render, apps, bindings
 
 A room may include itself and the rooms below it. The core (math, brdf, sampler) sees the standard
 library alone; Embree is seen by render/embree_scene alone.
@@ -19,6 +19,7 @@ MAY_SEE = {
     "math": ("base",),
     "brdf": ("base", "math"),
     "sampler": ("base", "math", "brdf"),
+    "simd": CORE,
     "io": CORE,
     "verify": CORE,
     "peers": CORE,

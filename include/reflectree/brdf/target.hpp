@@ -24,8 +24,12 @@ struct Target {
     return kind == TargetKind::norm ? norm(f, channels) : mixed(f, channels);
   }
 
+  template <class T>
+  static T norm(const RgbT<T>& f) {
+    return sqrt(f.r * f.r + f.g * f.g + f.b * f.b);
+  }
+
  private:
-  static float norm(const Rgb& f) { return sqrt(f.r * f.r + f.g * f.g + f.b * f.b); }
   static float norm(const float* f, int channels) {
     float sum = 0;
     for (int c = 0; c < channels; ++c) sum += f[c] * f[c];

@@ -3,7 +3,9 @@
 // and, later, outward-rounded intervals. Models use select, min and max instead of branches.
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <type_traits>
 
 // The hot path of sampling is one function to the optimiser: a call would pass its structs through memory.
@@ -38,6 +40,23 @@ template <class T>
 constexpr T lerp(T t, T a, T b) {
   return a + t * (b - a);
 }
+
+// The sign bit decides, in integers: a branch would be a coin toss.
+// if_positive or if_negative by the sign bit of s.
+REFLECTREE_INLINE float by_sign(float s, float if_positive, float if_negative) {
+  const auto a = std::bit_cast<std::uint32_t>(if_positive), b = std::bit_cast<std::uint32_t>(if_negative);
+  const std::uint32_t negative = std::uint32_t(0) - (std::bit_cast<std::uint32_t>(s) >> 31U);
+  return std::bit_cast<float>(a ^ ((a ^ b) & negative));
+}
+// x, its sign turned around where the sign bit of s is set.
+REFLECTREE_INLINE float flip_sign(float x, float s) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^
+                              (std::bit_cast<std::uint32_t>(s) & 0x80000000U));
+}
+
+// Scalars for which a short polynomial is as good as libm.
+template <class T>
+inline constexpr bool single_precision = std::is_same_v<T, float>;
 
 // Found by overload: `using std::sqrt; sqrt(x)` would also find an interval's own.
 using std::abs;

@@ -25,12 +25,12 @@ REFLECTREE_INLINE Vec2<T> cos_sin_quarter(T t) {
 // cos(pi t / 2), sin(pi t / 2) for |t| <= 1; error 5e-8 before rounding (Lawson fit).
 template <class T>
 REFLECTREE_INLINE Vec2<T> cos_sin_half(T t) {
-  if constexpr (std::is_same_v<T, float>) {
-    const float h = 0.5f * t, s = h * h, s2 = s * s;  // Estrin's scheme: short chains
-    return {
-        (1.f - s * 4.93480214f) +
-            s2 * ((4.05870916f - s * 1.33521206f) + s2 * (0.234937559f - s * 0.0243967166f)),
-        h * ((3.14159264f - s * 5.16771009f) + s2 * ((2.55007766f - s * 0.598292159f) + s2 * 0.0776594082f))};
+  if constexpr (single_precision<T>) {
+    const T h = T(0.5f) * t, s = h * h, s2 = s * s;  // Estrin's scheme: short chains
+    return {(T(1.f) - s * T(4.93480214f)) + s2 * ((T(4.05870916f) - s * T(1.33521206f)) +
+                                                  s2 * (T(0.234937559f) - s * T(0.0243967166f))),
+            h * ((T(3.14159264f) - s * T(5.16771009f)) +
+                 s2 * ((T(2.55007766f) - s * T(0.598292159f)) + s2 * T(0.0776594082f)))};
   } else {
     return {cos(pi_v<T> / T(2) * t), sin(pi_v<T> / T(2) * t)};
   }

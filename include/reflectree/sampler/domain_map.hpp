@@ -2,9 +2,6 @@
 // The map of each domain (domain.hpp), with its inverse and its measure. wo lies in the x-z plane.
 #pragma once
 
-#include <bit>
-#include <cstdint>
-
 #include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/math/square_maps.hpp"
 #include "reflectree/sampler/domain.hpp"
@@ -14,10 +11,12 @@ namespace reflectree {
 // A point of the square, lifted. `projected_area` = d(projected solid angle of wi) / d(share of the
 // square), so that T = t * projected_area integrates over the whole square (area 1) to the albedo;
 // pdf_disk = density per share / projected_area.
-struct DomainPoint {
-  ShadingGeometry<float> geometry;
-  float projected_area;  // > 0
+template <class T>
+struct DomainPointT {
+  ShadingGeometry<T> geometry;
+  T projected_area;  // > 0
 };
+using DomainPoint = DomainPointT<float>;
 
 namespace detail {
 
@@ -30,21 +29,16 @@ namespace detail {
 // it meets the rim at y = 1, so that nothing of the square is wasted, and tau'(0) = 1 for every phi and wo,
 // so that a specular lobe stays put. d(solid angle of wh) = tau cos^3 theta_h dtau dphi.
 
-// if_positive or if_negative by the sign bit of s: a branch would be a coin toss.
-REFLECTREE_INLINE float by_sign(float s, float if_positive, float if_negative) {
-  const auto a = std::bit_cast<std::uint32_t>(if_positive), b = std::bit_cast<std::uint32_t>(if_negative);
-  const std::uint32_t negative = std::uint32_t(0) - (std::bit_cast<std::uint32_t>(s) >> 31U);
-  return std::bit_cast<float>(a ^ ((a ^ b) & negative));
-}
-
 // P and cos_theta_o, both multiplied by L = h + |sin_theta_o cos phi|: P L is L^2, or, where P would cancel,
 // cos^2 theta_o.
+template <class T>
 struct HalfVectorStar {
-  float p, c;
+  T p, c;
 };
-REFLECTREE_INLINE HalfVectorStar half_vector_star(float sin_theta_o, float cos_theta_o, float cos_phi) {
-  const float c2 = sqr(cos_theta_o), sx = sin_theta_o * cos_phi;
-  const float l = sqrt(c2 + sx * sx) + abs(sx);
+template <class T>
+REFLECTREE_INLINE HalfVectorStar<T> half_vector_star(T sin_theta_o, T cos_theta_o, T cos_phi) {
+  const T c2 = sqr(cos_theta_o), sx = sin_theta_o * cos_phi;
+  const T l = sqrt(c2 + sx * sx) + abs(sx);
   return {by_sign(sx, l * l, c2), cos_theta_o * l};
 }
 
@@ -52,23 +46,24 @@ REFLECTREE_INLINE HalfVectorStar half_vector_star(float sin_theta_o, float cos_t
 inline constexpr float min_cos_theta_i = 1e-7f;
 
 // azimuth: unit vector; side = -1: wo mirrored about the normal, for retro-reflective lobes.
-REFLECTREE_INLINE DomainPoint lift_half_vector(Direction wo, Vec2<float> azimuth, float y, float side) {
-  y = max(y, 1e-12f);
-  const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, azimuth.x);
-  const float d = star.p / (star.p + (star.c - star.p) * y);
-  const float tau = y * d;
+template <class T>
+REFLECTREE_INLINE DomainPointT<T> lift_half_vector(Vec3<T> wo, Vec2<T> azimuth, T y, float side) {
+  y = max(y, T(1e-12f));
+  const Vec3<T> axis{T(side) * wo.x, T(0), wo.z};
+  const HalfVectorStar<T> star = half_vector_star(axis.x, axis.z, azimuth.x);
+  const T d = star.p / (star.p + (star.c - star.p) * y);
+  const T tau = y * d;
   // n = (tau azimuth, 1) is parallel to wh: wi = 2 (wo.n) / (n.n) n - wo.
-  const float nn = 1 + tau * tau;
-  const Direction axis{side * wo.x, 0, wo.z};
-  const float wo_n = max(axis.x * azimuth.x * tau + axis.z, min_cos_theta_i);
-  const float cos2_theta_h = 1 / nn, twice = 2 * wo_n * cos2_theta_h;
-  const Direction wi{twice * tau * azimuth.x - axis.x, twice * tau * azimuth.y,
-                     max(twice - axis.z, min_cos_theta_i)};
+  const T nn = T(1) + tau * tau;
+  const T wo_n = max(axis.x * azimuth.x * tau + axis.z, T(min_cos_theta_i));
+  const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
+  const Vec3<T> wi{twice * tau * azimuth.x - axis.x, twice * tau * azimuth.y,
+                   max(twice - axis.z, T(min_cos_theta_i))};
   // d(wi) = 4 (wo.wh) d(wh); dphi = pi/2 dx, dx dy = 4 d(share).
-  const float projected_area = wi.z * (8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (tau * d * d);
+  const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (tau * d * d);
   if (side < 0) return {shading_geometry(wo, wi), projected_area};
-  const float cos_theta_h = sqrt(cos2_theta_h);
-  const Direction wh{tau * azimuth.x * cos_theta_h, tau * azimuth.y * cos_theta_h, cos_theta_h};
+  const T cos_theta_h = sqrt(cos2_theta_h);
+  const Vec3<T> wh{tau * azimuth.x * cos_theta_h, tau * azimuth.y * cos_theta_h, cos_theta_h};
   return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
 }
 
@@ -81,7 +76,7 @@ REFLECTREE_INLINE LoweredHalfVector lower_half_vector(Direction wo, Direction wi
   const Direction wh = normalize(sum_of_directions(Direction{side * wo.x, 0, wo.z}, wi));
   const float sin_theta_h = sqrt(sin2_theta(wh));
   if (!(sin_theta_h > 0)) return {wh, 0};
-  const HalfVectorStar star = half_vector_star(side * wo.x, wo.z, wh.x / sin_theta_h);
+  const HalfVectorStar<float> star = half_vector_star(side * wo.x, wo.z, wh.x / sin_theta_h);
   const float tau = sin_theta_h / max(wh.z, 1e-12f);
   return {wh, star.p * tau / (star.p - (star.c - star.p) * tau)};  // tau = y d, solved for y
 }
@@ -94,38 +89,43 @@ REFLECTREE_INLINE float lower_azimuth(Direction w) {
   return w.x < 0 ? -x : x;
 }
 
+// lift() for floats or lanes.
+template <class T>
+REFLECTREE_INLINE DomainPointT<T> lift_point(const Domain& domain, Vec3<T> wo, Vec2<T> p) {
+  const Vec2<T> half_azimuth = cos_sin_half(p.x);
+  const T y = abs(p.y);
+  // cos phi = sin(pi x / 2), sin phi = cos(pi x / 2), on the side of y.
+  const Vec2<T> azimuth{half_azimuth.y, flip_sign(half_azimuth.x, p.y)};
+  switch (domain.kind) {
+    case DomainKind::half_vector:
+      return lift_half_vector(wo, azimuth, y, 1);
+    case DomainKind::back_vector:
+      return lift_half_vector(wo, azimuth, y, -1);
+    case DomainKind::projected_disk: {
+      const T r = sqrt(y), z = max(sqrt(T(1) - y), T(min_cos_theta_i));
+      return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}), T(pi)};
+    }
+    case DomainKind::equal_area: {
+      const T r = sqrt(y * (T(2) - y)), z = max(T(1) - y, T(min_cos_theta_i));
+      return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}), T(2 * pi) * z};
+    }
+    default: {  // stretched: cos theta_i = v^(1 / (2 - a)), v = 1 - y; d(share) = dv dphi / 2 pi
+      const float power = 1 / (2 - domain.exponent);
+      const T v = max(T(1) - y, T(1e-7f));
+      const T z = max(pow(v, T(power)), T(min_cos_theta_i));
+      const T r = sqrt(T(1) - z * z);
+      return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}),
+              T(2 * pi * power) * z * z / v};
+    }
+  }
+}
+
 }  // namespace detail
 
 // wo = (sin theta_o, 0, cos theta_o); p in square coordinates (domain.hpp); `mirrored` turns wi.y around, the
 // coin of half domains.
 REFLECTREE_INLINE DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p, bool mirrored = false) {
-  const Vec2<float> half_azimuth = detail::cos_sin_half(p.x);
-  const float y = abs(p.y);
-  // cos phi = sin(pi x / 2), sin phi = cos(pi x / 2), on the side of y.
-  const std::uint32_t sign =
-      (std::bit_cast<std::uint32_t>(p.y) & 0x80000000U) ^ (std::uint32_t(mirrored) << 31U);
-  const Vec2<float> azimuth{half_azimuth.y,
-                            std::bit_cast<float>(std::bit_cast<std::uint32_t>(half_azimuth.x) ^ sign)};
-  switch (domain.kind) {
-    case DomainKind::half_vector:
-      return detail::lift_half_vector(wo, azimuth, y, 1);
-    case DomainKind::back_vector:
-      return detail::lift_half_vector(wo, azimuth, y, -1);
-    case DomainKind::projected_disk: {
-      const float r = sqrt(y), z = max(sqrt(1 - y), detail::min_cos_theta_i);
-      return {shading_geometry(wo, Direction{r * azimuth.x, r * azimuth.y, z}), pi};
-    }
-    case DomainKind::equal_area: {
-      const float r = sqrt(y * (2 - y)), z = max(1 - y, detail::min_cos_theta_i);
-      return {shading_geometry(wo, Direction{r * azimuth.x, r * azimuth.y, z}), 2 * pi * z};
-    }
-    default: {  // stretched: cos theta_i = v^(1 / (2 - a)), v = 1 - y; d(share) = dv dphi / 2 pi
-      const float v = max(1 - y, 1e-7f), power = 1 / (2 - domain.exponent);
-      const float z = max(pow(v, power), detail::min_cos_theta_i);
-      const float r = sqrt(1 - z * z);
-      return {shading_geometry(wo, Direction{r * azimuth.x, r * azimuth.y, z}), 2 * pi * power * z * z / v};
-    }
-  }
+  return detail::lift_point(domain, wo, {p.x, flip_sign(p.y, mirrored ? -0.f : 0.f)});
 }
 
 // Calls body(domain) with a kind that the compiler knows: the choice is made once, outside of a sample.

@@ -47,9 +47,10 @@ REFLECTREE_INLINE ChosenLeaf choose_leaf(const PackedSlab& slab, const PackedLea
 }
 
 // The inverse of the CDF of the density (1 + g s) / 2 on [-1, 1], returned as (s + 1) / 2 in [0, 1].
-REFLECTREE_INLINE float sample_linear(float slope, float u) {
-  const float a = 1 - slope, b = 1 + slope;
-  return min(2 * u / (a + sqrt(lerp(u, a * a, b * b))), 1.f);
+template <class T>
+REFLECTREE_INLINE T sample_linear(T slope, T u) {
+  const T a = T(1) - slope, b = T(1) + slope;
+  return min(T(2) * u / (a + sqrt(lerp(u, a * a, b * b))), T(1));
 }
 REFLECTREE_INLINE float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
 
@@ -58,20 +59,40 @@ REFLECTREE_INLINE float power_of_two(int exponent) {
   return std::bit_cast<float>(std::uint32_t(127 + exponent) << 23U);
 }
 
-// A point of a leaf, and there majorant * q or density * q: per share of the square.
-struct PointInLeaf {
-  Vec2<float> p;
-  float height;
+// A leaf unpacked: its cell starts at (x, y) and is width by length, in square coordinates.
+template <class T>
+struct LeafCell {
+  T x, y, width, length;
+  T slope_x, slope_y;  // of the shape (1 + slope_x s)(1 + slope_y s'), s and s' in [-1, 1] across the cell
+  T height;
 };
-// tx, ty in [0, 1] across the leaf.
+REFLECTREE_INLINE LeafCell<float> unpack(const PackedLeaf& leaf, bool half) {
+  return {float(int(leaf.x) - 0x4000) * 0x1p-14f,
+          half ? float(leaf.y) * 0x1p-15f : float(int(leaf.y) - 0x4000) * 0x1p-14f,
+          power_of_two(1 - leaf.level_x),
+          power_of_two((half ? 0 : 1) - leaf.level_y),
+          float(leaf.slope_x) * (1.f / 128),
+          float(leaf.slope_y) * (1.f / 128),
+          leaf.height};
+}
+
+// A point of a leaf, and there majorant * q or density * q: per share of the square.
+template <class T>
+struct PointInLeafT {
+  Vec2<T> p;
+  T height;
+};
+using PointInLeaf = PointInLeafT<float>;
+// tx, ty in [0, 1] across the leaf. The sum with the corner comes last, where small cells keep their
+// precision.
+template <class T>
+REFLECTREE_INLINE PointInLeafT<T> point_at(const LeafCell<T>& cell, T tx, T ty) {
+  const T shape_x = (T(1) - cell.slope_x) + T(2) * cell.slope_x * tx;
+  const T shape_y = (T(1) - cell.slope_y) + T(2) * cell.slope_y * ty;
+  return {{cell.x + cell.width * tx, cell.y + cell.length * ty}, cell.height * shape_x * shape_y};
+}
 REFLECTREE_INLINE PointInLeaf point_at(const PackedLeaf& leaf, bool half, float tx, float ty) {
-  const float gx = float(leaf.slope_x) * (1.f / 64),
-              gy = float(leaf.slope_y) * (1.f / 64);  // twice the slopes
-  // x = -1 + 2 (x0 + 2^-level tx); the sum with x0 comes last, where small cells keep their precision.
-  const float x = float(int(leaf.x) - 0x4000) * 0x1p-14f + power_of_two(1 - leaf.level_x) * tx;
-  const float y = half ? float(leaf.y) * 0x1p-15f + power_of_two(-leaf.level_y) * ty
-                       : float(int(leaf.y) - 0x4000) * 0x1p-14f + power_of_two(1 - leaf.level_y) * ty;
-  return {{x, y}, leaf.height * ((1 - 0.5f * gx) + gx * tx) * ((1 - 0.5f * gy) + gy * ty)};
+  return point_at(unpack(leaf, half), tx, ty);
 }
 
 // Drawn from the shape q by its inverse CDF: monotone in both uniforms.

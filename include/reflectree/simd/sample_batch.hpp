@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches of samples, each of its own wo, several times as fast as one by one. One sample is a long chain of
+// dependent operations; here each stage runs over a block of samples: what chooses (slab, leaf, random bits)
+// one by one, what computes (point, lift, evaluation, weight) in lanes.
+//
+//   sample_batch(sampler.exact, wo, random, out);
+//   sample_batch(sampler.one_shot, wo, random, out);  // by alias table
+//   sample_batch(sampler.one_shot, wo, points, out);  // by monotone descent from points of [0, 1)^2
+//
+// out.size() == wo.size(). "No sample" has flags 0, pdf 0 and weight 0. Nothing is allocated for a BRDF known
+// at compile time.
+#pragma once
+
+#include <cassert>
+
+#include "reflectree/sampler/exact_sampler.hpp"
+#include "reflectree/sampler/one_shot_sampler.hpp"
+#include "reflectree/simd/block_values.hpp"
+#include "reflectree/simd/descend.hpp"
+#include "reflectree/simd/trial_block.hpp"
+
+namespace reflectree {
+
+namespace detail {
+
+template <class Value>
+void store_no_sample(const Value& zero, DirectionSample<Value>& out) {
+  out = {{}, 0, zero, 0};
+}
+
+// Direction, pdf and weight of trial k.
+template <class Values, class Value>
+REFLECTREE_INLINE void store_sample(const TrialBlock& b, const Values& values, std::size_t k,
+                                    DirectionSample<Value>& out) {
+  using Field = TrialBlock::Field;
+  out = {{b.at[Field::wi_x][k], b.at[Field::wi_y][k], b.at[Field::wi_z][k]},
+         b.at[Field::pdf][k],
+         scaled(values.value(k), b.at[Field::scale][k]),
+         sample_reflection};
+}
+
+template <AcrossX across_x, class Values, class Value>
+REFLECTREE_INLINE void finish_one_shot(const Domain& domain, TrialBlock& b, Values& values,
+                                       std::span<DirectionSample<Value>> out) {
+  using Field = TrialBlock::Field;
+  compute_points<across_x>(domain, b, values);
+  for (std::size_t k = 0; k < b.count; k += lane_count) {
+    const Lanes area = b.lanes(Field::projected_area, k), density = b.lanes(Field::majorant, k);
+    b.set(Field::pdf, k, density / area * b.lanes(Field::wi_z, k));
+    b.set(Field::scale, k, area / density);
+  }
+  for (std::size_t k = 0; k < b.count; ++k) store_sample(b, values, k, out[b.index[k]]);
+}
+
+}  // namespace detail
+
+// One-shot by alias table: out[i] is sampler.sample(wo[i], u), called in order, from the same bits.
+template <Brdf F, RandomBits U>
+void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> wo, U& u,
+                  std::span<DirectionSample<ValueOf<F>>> out) {
+  assert(out.size() == wo.size());
+  const PackedSampler& packed = sampler.packed();
+  detail::TrialBlock block;
+  detail::BlockValues<F> values(sampler.brdf(), packed.target);
+  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    for (std::size_t i = 0; i < wo.size();) {
+      block.count = 0;
+      for (; i < wo.size() && !block.full(); ++i) {
+        Incidence in;
+        if (!find_incidence(packed, wo[i], in)) {
+          detail::store_no_sample(values.zero(), out[i]);
+          continue;
+        }
+        const PackedSlab& slab = packed.one_shot.slab_at(in.wo.z);
+        const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
+        block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half, u);
+      }
+      detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
+    }
+  });
+}
+
+// One-shot by monotone descent: out[i] is sampler.sample(wo[i], points[i].x, points[i].y).
+template <Brdf F>
+void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> wo,
+                  std::span<const Vec2<double>> points, std::span<DirectionSample<ValueOf<F>>> out) {
+  assert(points.size() == wo.size() && out.size() == wo.size());
+  using Field = detail::TrialBlock::Field;
+  const PackedSampler& packed = sampler.packed();
+  const bool half = packed.domain.half;
+  detail::TrialBlock block;
+  detail::BlockValues<F> values(sampler.brdf(), packed.target);
+  constexpr std::size_t side_by_side = 8;
+  struct Started {
+    Incidence in;
+    std::size_t i;
+    float turn;
+  };
+  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    for (std::size_t i = 0; i < wo.size();) {
+      block.count = 0;
+      while (i < wo.size() && block.count + side_by_side <= detail::block_size) {
+        detail::Descent descents[side_by_side];
+        Started started[side_by_side];
+        std::size_t n = 0;
+        for (; i < wo.size() && n < side_by_side; ++i) {
+          Started& s = started[n];
+          if (!find_incidence(packed, wo[i], s.in)) {
+            detail::store_no_sample(values.zero(), out[i]);
+            continue;
+          }
+          // Folded continuously across the plane of incidence.
+          const bool below = half && points[i].y < 0.5;
+          const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
+          s.i = i;
+          s.turn = below ? -0.f : 0.f;
+          descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in.wo.z), points[i].x, u2);
+        }
+        detail::descend(descents, n);
+        for (std::size_t j = 0; j < n; ++j) {
+          const std::size_t k = block.add(started[j].i, started[j].in, *descents[j].leaf, half);
+          block.at[Field::across_x][k] = descents[j].across(0);
+          block.at[Field::across_y][k] = descents[j].across(1);
+          block.at[Field::turn][k] = started[j].turn;
+        }
+      }
+      detail::finish_one_shot<detail::AcrossX::uniform>(domain, block, values, out);
+    }
+  });
+}
+
+// Exact: out[i] is distributed as sampler.sample(wo[i], u), independent of the others. Rejected trials begin
+// again from the leaf, side by side with the first trials of later directions.
+template <Brdf F, RandomBits U, class Stats = NoStatistics>
+void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo, U& u,
+                  std::span<DirectionSample<ValueOf<F>>> out, Stats&& stats = {}) {
+  assert(out.size() == wo.size());
+  using Field = detail::TrialBlock::Field;
+  const PackedSampler& packed = sampler.packed();
+  detail::TrialBlock b;
+  detail::BlockValues<F> values(sampler.brdf(), packed.target);
+  struct Pending {
+    Incidence in;
+    const PackedSlab* slab;
+    std::size_t i;
+    int trials;
+  };
+  Pending pending[detail::block_size];
+  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < wo.size() || count > 0;) {
+      for (; i < wo.size() && count < detail::block_size; ++i) {
+        Pending& p = pending[count];
+        if (!find_incidence(packed, wo[i], p.in)) {
+          detail::store_no_sample(values.zero(), out[i]);
+          continue;
+        }
+        p.slab = &packed.exact.slab_at(p.in.wo.z);
+        p.i = i;
+        p.trials = 0;
+        ++count;
+      }
+      b.count = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Pending& p = pending[k];
+        const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
+        b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half, u);
+        b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
+      }
+      detail::compute_points<detail::AcrossX::place>(domain, b, values);
+      // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
+      for (std::size_t k = 0; k < count; k += lane_count) {
+        const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
+        b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
+        b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
+        b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
+        b.set(Field::scale, k, a / t);
+      }
+      std::size_t rejected = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const float target = b.at[Field::target][k];
+        const bool accepted = b.at[Field::uniform][k] < target;
+        stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
+        if (accepted) {
+          detail::store_sample(b, values, k, out[b.index[k]]);
+        } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
+          pending[rejected++] = pending[k];
+        } else {
+          stats.exhausted();
+          detail::store_no_sample(values.zero(), out[b.index[k]]);
+        }
+      }
+      count = rejected;
+    }
+  });
+}
+
+}  // namespace reflectree

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// A block of trials, field by field: chosen one by one, computed in lanes.
+#pragma once
+
+#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/incidence.hpp"
+#include "reflectree/sampler/leaf.hpp"
+#include "reflectree/simd/lanes.hpp"
+
+namespace reflectree::detail {
+
+inline constexpr std::size_t block_size = 64;
+static_assert(block_size % lane_count == 0);
+
+struct alignas(64) TrialBlock {
+  enum Field {
+    sin_theta_o,
+    cos_theta_o,
+    cos_phi,
+    sin_phi,
+    albedo,  // Incidence
+    x,
+    y,
+    width,
+    length,
+    slope_x,
+    slope_y,
+    height,  // LeafCell
+    across_x,
+    across_y,       // uniforms or places across the leaf
+    turn,           // sign bit: of the coin of half domains
+    uniform,        // of the acceptance
+    chosen_fields,  // above: chosen; below: computed
+    wi_x = chosen_fields,
+    wi_y,
+    wi_z,
+    projected_area,
+    majorant,
+    target,
+    pdf,
+    scale,
+    field_count
+  };
+  float at[field_count][block_size];
+  std::uint32_t index[block_size];  // in the batch
+  std::size_t count = 0;
+
+  bool full() const { return count == block_size; }
+  Lanes lanes(Field field, std::size_t k) const { return Lanes::load(at[field] + k); }
+  void set(Field field, std::size_t k, Lanes v) { v.store(at[field] + k); }
+
+  // The next trial; across_x, across_y, turn and uniform are still to be set.
+  REFLECTREE_INLINE std::size_t add(std::size_t i, const Incidence& in, const PackedLeaf& leaf, bool half) {
+    const std::size_t k = count++;
+    index[k] = std::uint32_t(i);
+    at[sin_theta_o][k] = in.wo.x;
+    at[cos_theta_o][k] = in.wo.z;
+    at[cos_phi][k] = in.cos_phi;
+    at[sin_phi][k] = in.sin_phi;
+    at[albedo][k] = in.albedo;
+    const LeafCell<float> cell = unpack(leaf, half);
+    at[x][k] = cell.x;
+    at[y][k] = cell.y;
+    at[width][k] = cell.width;
+    at[length][k] = cell.length;
+    at[slope_x][k] = cell.slope_x;
+    at[slope_y][k] = cell.slope_y;
+    at[height][k] = cell.height;
+    return k;
+  }
+  // From random bits, as place() in leaf.hpp: x is mixed here, y is left to the lanes.
+  template <RandomBits U>
+  REFLECTREE_INLINE std::size_t add(std::size_t i, const Incidence& in, const ChosenLeaf& chosen, bool half,
+                                    U& u) {
+    const std::uint32_t first = u(), second = u();
+    const std::size_t k = add(i, in, chosen.leaf, half);
+    at[across_x][k] = mix_linear(chosen.leaf.slope_x, first, std::uint32_t(chosen.spare >> 32U));
+    at[across_y][k] = to_unit_float(second);
+    at[turn][k] = std::bit_cast<float>((second & std::uint32_t(half)) << 31U);
+    return k;
+  }
+  // Fills the last lanes with copies of the last trial.
+  void pad() {
+    for (std::size_t k = count; k % lane_count != 0; ++k) {
+      for (auto& field : at) field[k] = field[count - 1];
+    }
+  }
+};
+
+// Whether across_x is a uniform still to be taken through the inverse CDF, or the place itself.
+enum class AcrossX { uniform, place };
+
+// Computes points, directions and what f says there (block_values.hpp).
+template <AcrossX across_x, class Values>
+REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Values& values) {
+  using Field = TrialBlock::Field;
+  b.pad();
+  for (std::size_t k = 0; k < b.count; k += lane_count) {
+    const auto lanes = [&b, k](Field field) { return b.lanes(field, k); };
+    const LeafCell<Lanes> cell{lanes(Field::x),      lanes(Field::y),       lanes(Field::width),
+                               lanes(Field::length), lanes(Field::slope_x), lanes(Field::slope_y),
+                               lanes(Field::height)};
+    Lanes tx = lanes(Field::across_x);
+    if constexpr (across_x == AcrossX::uniform) tx = sample_linear(cell.slope_x, tx);
+    const PointInLeafT<Lanes> at = point_at(cell, tx, sample_linear(cell.slope_y, lanes(Field::across_y)));
+    const Vec3<Lanes> wo{lanes(Field::sin_theta_o), Lanes(0), lanes(Field::cos_theta_o)};
+    const DomainPointT<Lanes> point =
+        lift_point(domain, wo, Vec2<Lanes>{at.p.x, flip_sign(at.p.y, lanes(Field::turn))});
+    const Vec3<Lanes>& wi = point.geometry.wi;
+    const Lanes cos_phi = lanes(Field::cos_phi), sin_phi = lanes(Field::sin_phi);
+    b.set(Field::wi_x, k, wi.x * cos_phi - wi.y * sin_phi);
+    b.set(Field::wi_y, k, wi.x * sin_phi + wi.y * cos_phi);
+    b.set(Field::wi_z, k, wi.z);
+    b.set(Field::projected_area, k, point.projected_area);
+    b.set(Field::majorant, k, at.height);
+    values.evaluate(k, point.geometry);
+  }
+  values.finish(b.count);
+}
+
+}  // namespace reflectree::detail
