@@ -123,7 +123,7 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
   const AlbedoTable flat{{min_cos_theta_o, 1}, {1, 1}, 0};
   // A coarser goal, and no slab is halved: what theta_o costs is counted in.
   const float goal = 1 + 2 * (options.expected_trials - 1);
-  GrowthRules rules{goal, 1, 2000, false, true, analyse_exact};
+  GrowthRules rules{goal, 1, 2000, false, true, analyse_exact, 1e30f};
   Domain best;
   float least = 1e30f;
   for (const Domain domain :

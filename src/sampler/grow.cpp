@@ -128,6 +128,33 @@ float total(const Slab& slab, float Leaf::*member) {
   return float(sum);
 }
 
+// The mass that the tree should see: 1, less the part of the slab that has no albedo.
+float expected_mass(const Slab& slab) {
+  float mass = 0;
+  for (std::size_t k = 0; k < theta_nodes; ++k) mass += slab.albedo[k] > 0 ? theta_weights[k] : 0.f;
+  return mass;
+}
+
+constexpr int coarse_levels = 12;  // of both axes together, down to which a missed lobe is looked for
+
+// The leaves of the fewest levels, to be halved along their longer sides; none below coarse_levels.
+std::vector<std::uint32_t> coarsest_leaves(Slab& slab) {
+  std::vector<std::uint32_t> leaves;
+  int fewest = coarse_levels;
+  const auto levels = [](const Node& node) { return node.leaf.cell.level_x + node.leaf.cell.level_y; };
+  for (const Node& node : slab.nodes) {
+    if (node.split == Split::leaf) fewest = std::min(fewest, levels(node));
+  }
+  if (fewest == coarse_levels) return leaves;
+  for (std::uint32_t i = 0; i < slab.nodes.size(); ++i) {
+    Node& node = slab.nodes[i];
+    if (node.split != Split::leaf || levels(node) > fewest) continue;
+    node.leaf.split_x = node.leaf.cell.level_x <= node.leaf.cell.level_y;
+    leaves.push_back(i);
+  }
+  return leaves;
+}
+
 void split_node(Slab& slab, std::uint32_t index, const Domain& domain) {
   const auto child = std::uint32_t(slab.nodes.size());
   Leaf leaf = slab.nodes[index].leaf;
@@ -225,7 +252,12 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
       if (!state.active) continue;
       Slab& slab = slabs[s];
       const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
-      const bool met = cost <= rules.goal * ideal;
+      std::vector<std::uint32_t> blind;
+      const bool fits = cost <= rules.goal * ideal;
+      if (fits && abs(ideal - expected_mass(slab)) > rules.mass_error + 2 * albedo.relative_error) {
+        blind = coarsest_leaves(slab);
+      }
+      const bool met = fits && blind.empty();
       if (rules.split_slabs && (met || state.leaves >= state.next_check) &&
           slab.theta_hi - slab.theta_lo > narrowest_slab) {
         state.next_check = state.leaves * 3 / 2;
@@ -237,6 +269,18 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
       }
       if (met || state.leaves >= rules.max_leaves) {
         state.active = false;
+        continue;
+      }
+      const auto split = [&](std::uint32_t i) {
+        split_node(slab, i, field.domain);
+        const std::uint32_t child = slab.nodes[i].child;
+        tasks.push_back({s, child});
+        tasks.push_back({s, child + 1});
+        ++state.leaves;
+      };
+      if (!blind.empty()) {
+        for (const std::uint32_t i : blind) split(i);
+        busy = true;
         continue;
       }
       // Split the leaves of largest excess until the gain that they promise covers the surplus.
@@ -259,11 +303,7 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
         const float e = excess(i);
         if (surplus <= 0 || (any && e < min(fair, 0.5f * worst)) || state.leaves >= rules.max_leaves) break;
         if (!may_split(slab.nodes[i].leaf)) continue;
-        split_node(slab, i, field.domain);
-        const std::uint32_t child = slab.nodes[i].child;
-        tasks.push_back({s, child});
-        tasks.push_back({s, child + 1});
-        ++state.leaves;
+        split(i);
         surplus -= 0.5f * e;
         any = true;
       }

@@ -94,6 +94,9 @@ struct GrowthRules {
   bool split_slabs = true;
   bool bounds = true;  // shares bound what was seen (exact), or fit it (one-shot)
   std::function<void(Leaf&, const Grid&)> analyse;
+  // T / albedo integrates to 1 in every slab. Where a tree that met its goal sees more or less than that, a
+  // lobe runs between the points of its grids, and the coarsest leaves are halved until it is met.
+  float mass_error = 0.004f;
 };
 
 // Fills cosines and albedo of a slab with an unsplit root.
