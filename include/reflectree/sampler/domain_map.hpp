@@ -74,8 +74,8 @@ struct LoweredHalfVector {
 };
 REFLECTREE_INLINE LoweredHalfVector lower_half_vector(Direction wo, Direction wi, float side) {
   const Direction wh = normalize(sum_of_directions(Direction{side * wo.x, 0, wo.z}, wi));
-  const float sin_theta_h = sqrt(sin2_theta(wh));
-  if (!(sin_theta_h > 0)) return {wh, 0};
+  // No less than a rounding of wi: at the pole itself the density of a leaf would be infinite.
+  const float sin_theta_h = sqrt(max(sin2_theta(wh), sqr(1e-7f)));
   const HalfVectorStar<float> star = half_vector_star(side * wo.x, wo.z, wh.x / sin_theta_h);
   const float tau = sin_theta_h / max(wh.z, 1e-12f);
   return {wh, star.p * tau / (star.p - (star.c - star.p) * tau)};  // tau = y d, solved for y
