@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/brdf/models/lambert.hpp"
 #include "reflectree/brdf/models/retro_reflector.hpp"
@@ -85,6 +87,125 @@ TEST(SampleBatch, OneShotIsThatOfOneByOneCalls) {
   // A plain lambda: one by one inside the block.
   const auto lobe = [](Direction wo, Direction wi) { return 1 + dot(wo, wi) * dot(wo, wi); };
   expect_one_shot_like_one_by_one(make_sampler(lobe), "lambda");
+}
+
+// A batch as a sampler that draws one direction: every other wo of the batch is a random one, so that lanes
+// that were mixed up would show. `shift`: the planted fault.
+template <class Sampler>
+ErasedSampler drawn_in_batches(const Sampler& sampler, std::size_t shift) {
+  using Sample = DirectionSample<typename Sampler::Value>;
+  struct State {
+    std::vector<Direction> wo = many_wo(334, false);
+    std::vector<Sample> out = std::vector<Sample>(334);
+    std::size_t next = 334;
+  };
+  ErasedSampler erased;
+  erased.name = "batch";
+  erased.concurrent = false;
+  erased.sample = [&sampler, shift, state = std::make_shared<State>()](Direction wo, Pcg32& u,
+                                                                       DrawnDirection& drawn) {
+    if (state->next >= state->out.size()) {
+      for (std::size_t i = 0; i < state->wo.size(); i += 2) state->wo[i] = wo;
+      sample_batch(sampler, state->wo, u, std::span(state->out));
+      state->next = 0;
+    }
+    const Sample& s = state->out[(state->next + shift) % state->out.size()];
+    state->next += 2;
+    drawn = {s.wi, s.pdf, sampler.packed().target(s.weight)};
+    return s.flags != 0;
+  };
+  return erased;
+}
+
+template <class F>
+void expect_distributed_as_t_cos(const F& f, Direction wo) {
+  const Sampler<F> sampler = make_sampler(f);
+  const Bins bins = equal_mass_bins(target_function(AnyBrdf(f)), wo);
+  const ChiSquareOptions options{.samples = 400'000};
+  const Tally right = tally_of(drawn_in_batches(sampler.exact, 0), bins, options);
+  EXPECT_EQ(right.none, 0U);
+  for (const CheckResult& r : {check_counts(right, bins, options), check_weights(right, bins, options),
+                               check_mean_weight(right, bins, options)}) {
+    EXPECT_TRUE(r.passed) << to_line(r);
+  }
+  const Tally mixed_up = tally_of(drawn_in_batches(sampler.exact, 1), bins, options);
+  EXPECT_FALSE(check_counts(mixed_up, bins, options).passed);
+  const Tally one_shot = tally_of(drawn_in_batches(sampler.one_shot, 0), bins, options);
+  EXPECT_TRUE(check_weights(one_shot, bins, options).passed);
+}
+
+TEST(SampleBatch, ExactIsDistributedAsTheTarget) {
+  const auto wo_at = [](float theta) { return Direction{-sin(theta), 0, cos(theta)}; };
+  expect_distributed_as_t_cos(Ggx{0.1f}, wo_at(0.5f));
+  expect_distributed_as_t_cos(Ggx{0.3f}, wo_at(1.5f));
+  expect_distributed_as_t_cos(RetroReflector{}, wo_at(1.f));
+}
+
+// One batch: pdf and weight as the sampler's own pdf(); all served; the trials as many as expected.
+template <class F>
+void expect_exact_like_one_by_one(const Sampler<F>& sampler, const std::string& name) {
+  using Sample = DirectionSample<ValueOf<F>>;
+  const std::size_t n = 3000;
+  const std::vector<Direction> wo = many_wo(n);
+  std::vector<Sample> out(n);
+  Pcg32 u(3), same(3);
+  SampleStatistics statistics;
+  sample_batch(sampler.exact, wo, u, std::span(out), statistics);
+  int wrong = 0, lost = 0;
+  double expected = 0, variance = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (wo[i].z < 0) {
+      lost += out[i].flags != 0;
+      continue;
+    }
+    const double trials = double(sampler.exact.expected_trials(wo[i]));
+    expected += trials;
+    variance += trials * max(trials - 1, 0.);
+    lost += out[i].flags != sample_reflection || !(out[i].pdf > 0);
+    // float directions: sharp peaks magnify their rounding
+    const float pdf = sampler.exact.pdf(wo[i], out[i].wi);
+    wrong += !(abs(pdf - out[i].pdf) < 2e-3f * pdf);
+    const float f_cos = sampler.exact.packed().target(out[i].weight) * out[i].pdf;
+    wrong += !(abs(f_cos - pdf * sampler.exact.albedo(wo[i])) < 2e-3f * f_cos);
+  }
+  EXPECT_EQ(lost, 0) << name;
+  EXPECT_LE(wrong, 6) << name;
+  EXPECT_EQ(statistics.exhausted_count, 0U) << name;
+  EXPECT_NEAR(double(statistics.trials), expected, 5 * std::sqrt(variance) + 1e-3 * expected + 1) << name;
+
+  std::vector<Sample> again(n);
+  sample_batch(sampler.exact, wo, same, std::span(again));
+  int different = 0;
+  for (std::size_t i = 0; i < n; ++i) different += !(difference(out[i], again[i]) == 0);
+  EXPECT_EQ(different, 0) << name << ": the same seed gives the same samples";
+}
+
+TEST(SampleBatch, ExactAgreesWithItsOwnPdf) {
+  expect_exact_like_one_by_one(make_sampler(Ggx{0.1f}), "ggx");
+  BuildOptions by_luminance;
+  by_luminance.target.kind = TargetKind::luminance;
+  expect_exact_like_one_by_one(make_sampler(Ggx{0.1f}, by_luminance), "ggx by luminance");
+  expect_exact_like_one_by_one(make_sampler(Lambert{}), "lambert");
+}
+
+TEST(SampleBatch, EveryModelOfTheRegistryByOneErasedCallABlock) {
+  for (const ModelInfo& info : models()) {
+    std::vector<Rgb> values;
+    for (const ParameterInfo& p : info.parameters) values.push_back(p.initial);
+    const AnyBrdf f = info.make(values);
+    if (!f.traits().isotropic) continue;
+    const Sampler<AnyBrdf> sampler = make_sampler(f);
+    expect_one_shot_like_one_by_one(sampler, std::string(info.name));
+    expect_exact_like_one_by_one(sampler, std::string(info.name));
+  }
+}
+
+TEST(SampleBatch, NothingIsAskedOfAnEmptyBatch) {
+  const Sampler<Lambert> sampler = make_sampler(Lambert{});
+  Pcg32 u(1), same(1);
+  sample_batch(sampler.exact, {}, u, std::span<DirectionSample<Rgb>>());
+  sample_batch(sampler.one_shot, {}, u, std::span<DirectionSample<Rgb>>());
+  EXPECT_EQ(u(), same());
 }
 
 }  // namespace

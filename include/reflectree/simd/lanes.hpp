@@ -19,9 +19,7 @@
 
 namespace reflectree {
 
-#if defined(__AVX512F__)
-inline constexpr std::size_t lane_count = 16;
-#elif defined(__AVX__)
+#if defined(__AVX__)
 inline constexpr std::size_t lane_count = 8;
 #else
 inline constexpr std::size_t lane_count = 4;
@@ -33,9 +31,7 @@ typedef float FloatVector __attribute__((vector_size(4 * lane_count)));
 typedef std::int32_t IntVector __attribute__((vector_size(4 * lane_count)));
 REFLECTREE_INLINE constexpr FloatVector broadcast(float x) { return x - FloatVector{}; }
 REFLECTREE_INLINE FloatVector blend(IntVector c, FloatVector a, FloatVector b) { return c ? a : b; }
-#if defined(__AVX512F__)
-REFLECTREE_INLINE FloatVector root(FloatVector a) { return FloatVector(_mm512_sqrt_ps(__m512(a))); }
-#elif defined(__AVX__)
+#if defined(__AVX__)
 REFLECTREE_INLINE FloatVector root(FloatVector a) { return FloatVector(_mm256_sqrt_ps(__m256(a))); }
 #elif defined(__SSE2__)
 REFLECTREE_INLINE FloatVector root(FloatVector a) { return FloatVector(_mm_sqrt_ps(__m128(a))); }
@@ -102,7 +98,7 @@ class Lanes {
   REFLECTREE_INLINE friend LaneMask operator<=(Lanes a, Lanes b) { return {a.v_ <= b.v_}; }
   REFLECTREE_INLINE friend LaneMask operator>(Lanes a, Lanes b) { return {b.v_ < a.v_}; }
   REFLECTREE_INLINE friend LaneMask operator>=(Lanes a, Lanes b) { return {b.v_ <= a.v_}; }
-  REFLECTREE_INLINE friend LaneMask operator==(Lanes a, Lanes b) { return {a.v_ == b.v_}; }
+  REFLECTREE_INLINE friend constexpr LaneMask operator==(Lanes a, Lanes b) { return {a.v_ == b.v_}; }
 
  private:
   detail::FloatVector v_{};
