@@ -41,7 +41,7 @@ def medians(arguments: argparse.Namespace) -> dict[str, float]:
 def table(nanoseconds: dict[str, float]) -> str:
     floor = nanoseconds[FLOOR]
     rows = ["| benchmark | ns a direction | ratio to the floor |", "|---|---:|---:|"]
-    for name, time in nanoseconds.items():
+    for name, time in sorted(nanoseconds.items(), key=lambda item: (item[0] != FLOOR, item[0])):
         title, _, milli = name.partition("/")
         alpha = f", alpha = {int(milli) / 1000:g}" if milli else ""
         rows.append(f"| {title}{alpha} | {time:.1f} | {time / floor:.2f} |")
