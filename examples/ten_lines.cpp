@@ -13,8 +13,8 @@ int main() {
   const Direction wo = direction_from_angles(0.8f, 0.f);  // towards the viewer; z is the normal
   Pcg32 random(1);
   float radiance = 0;
-  for (int i = 0; i < 10000; ++i) {
-    if (const auto s = sampler.exact.sample(wo, random)) radiance += s->weight * light(s->wi) / 10000;
+  for (int i = 0; i < 100000; ++i) {
+    if (const auto s = sampler.exact.sample(wo, random)) radiance += s->weight * light(s->wi) / 100000;
   }
   std::printf("reflected radiance %.3f\n", double(radiance));
 }
