@@ -444,31 +444,34 @@ void analyse_exact(Leaf& leaf, const Grid& grid) {
 }
 
 void analyse_one_shot(Leaf& leaf, const Grid& grid) {
-  Values m, s;  // mean and mean square over theta_o
+  Values m, s, d;  // over theta_o: mean, mean square, and that of the difference to the mirror image
   float highest = 0;
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
-      m[j][i] = s[j][i] = 0;
+      m[j][i] = s[j][i] = d[j][i] = 0;
       for (int k = 0; k < theta_nodes; ++k) {
         const FieldValue v = grid[std::size_t((k * grid_size + j) * grid_size + i)];
         m[j][i] += theta_weights[k] * v.mean;
-        s[j][i] += theta_weights[k] * (sqr(v.mean) + sqr(v.upper - v.mean));
+        s[j][i] += theta_weights[k] * sqr(v.mean);
+        d[j][i] += theta_weights[k] * sqr(v.upper - v.mean);
         highest = max(highest, v.upper);
       }
     }
   }
   const Fit line = fit(m);
   leaf.slope_x = line.slope_x, leaf.slope_y = line.slope_y;
-  float square = 0, steady = 0;
+  float square = 0, steady = 0, difference = 0;
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
       const float w = lobatto_weights[j] * lobatto_weights[i] / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
       square += w * s[j][i];
       steady += w * sqr(m[j][i]);
+      difference += w * d[j][i];
     }
   }
   const float area = area_share(leaf.cell);
-  leaf.share = max(sqrt(square), floor_share);
+  // What mirror images differ by belongs to the best density, but no splitting saves it: it is no cost.
+  leaf.share = max(sqrt(square + difference), floor_share);
   leaf.ideal = area * line.mean;
   leaf.cost = max(area * sqrt(square), leaf.ideal);
   leaf.theta_cost = area * (sqrt(square) - sqrt(steady));
