@@ -254,9 +254,8 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
       const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
       std::vector<std::uint32_t> blind;
       const bool fits = cost <= rules.goal * ideal;
-      if (fits && abs(ideal - expected_mass(slab)) > rules.mass_error + 2 * albedo.relative_error) {
-        blind = coarsest_leaves(slab);
-      }
+      const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * albedo.relative_error;
+      if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
       const bool met = fits && blind.empty();
       if (rules.split_slabs && (met || state.leaves >= state.next_check) &&
           slab.theta_hi - slab.theta_lo > narrowest_slab) {
