@@ -122,6 +122,7 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
   constexpr int max_passes = 6;
   const float spare = 0.96f;  // of the budget: the attack will use the rest
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
+  rules.progress = 0.4f;
   grow(slabs, field, albedo, rules, host, &report.evaluations);
   rules.split_slabs = false;
   std::vector<std::size_t> first_new(slabs.size(), 0);
@@ -181,8 +182,8 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& options, const Host& hos
   host.progress(0.9f);
 
   std::vector<Slab> one_shot = slabs;
-  const GrowthRules rules{
-      sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
+  GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
+  rules.progress = 0.9f;
   grow(one_shot, field, data.albedo, rules, host, &data.report.evaluations);
   data.one_shot_partition = partition_of(one_shot);
   for (const Slab& slab : one_shot) data.one_shot.push_back(density_tree(slab));

@@ -243,6 +243,7 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
     states[s].leaves = leaves_in_order(slabs[s]).size();
   }
   while (true) {
+    host.progress(rules.progress);
     evaluate(slabs, tasks, field, rules, host, evaluations);
     tasks.clear();
     std::vector<std::uint32_t> halved;

@@ -97,6 +97,7 @@ struct GrowthRules {
   // T / albedo integrates to 1 in every slab. Where a tree that met its goal sees more or less than that, a
   // lobe runs between the points of its grids, and the coarsest leaves are halved until it is met.
   float mass_error = 0.004f;
+  float progress = 0;  // told to the host every round, a sign of life
 };
 
 // Fills cosines and albedo of a slab with an unsplit root.
