@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/peers/registry.hpp"
+
+#include "reflectree/sampler/sampler.hpp"
+
+namespace reflectree {
+
+namespace {
+
+// Monotone descent from two words: stratified points stay stratified.
+struct MonotoneSampler {
+  using Value = Spectrum;
+  OneShotSampler<AnyBrdf> one_shot;
+
+  template <RandomBits U>
+  std::optional<DirectionSample<Value>> sample(Direction wo, U& u) const {
+    const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
+    return one_shot.sample(wo, u1, u2);
+  }
+  float pdf(Direction wo, Direction wi) const { return one_shot.pdf(wo, wi); }
+};
+
+std::shared_ptr<const PackedSampler> packed(const PeerSubject& subject, const Host& host) {
+  if (subject.packed) return subject.packed;
+  BuildOptions options;
+  options.target = subject.target;
+  return std::make_shared<const PackedSampler>(pack(build(subject.f, options, host)));
+}
+
+using Made = std::optional<AnySampler<Spectrum>>;
+
+Made exact(const PeerSubject& subject, const Host& host) {
+  const auto data = packed(subject, host);
+  return AnySampler<Spectrum>("exact", ExactSampler<AnyBrdf>(subject.f, data), bytes_of(*data));
+}
+Made one_shot(const PeerSubject& subject, const Host& host) {
+  const auto data = packed(subject, host);
+  return AnySampler<Spectrum>("one-shot", OneShotSampler<AnyBrdf>(subject.f, data), bytes_of(*data));
+}
+Made monotone(const PeerSubject& subject, const Host& host) {
+  const auto data = packed(subject, host);
+  return AnySampler<Spectrum>("one-shot-monotone", MonotoneSampler{{subject.f, data}}, bytes_of(*data));
+}
+
+constexpr const char* ours = "Reflectree";
+
+// name, summary, source, general, unbiased, make
+constexpr SamplerInfo all[] = {
+    {"exact", "density exactly proportional to the target, by rejection under a tree of bounds", ours, true,
+     true, exact},
+    {"one-shot", "density of a tree, without rejection, by alias table", ours, true, true, one_shot},
+    {"one-shot-monotone", "the same by monotone descent, for stratified points", ours, true, true, monotone},
+};
+
+}  // namespace
+
+std::span<const SamplerInfo> samplers() { return all; }
+
+const SamplerInfo* find_sampler(std::string_view name) {
+  for (const SamplerInfo& info : all) {
+    if (info.name == name) return &info;
+  }
+  return nullptr;
+}
+
+}  // namespace reflectree
