@@ -99,8 +99,11 @@ def evaluate(fields, wo, wi):
 
 def main():
     path, pairs, out = sys.argv[1:]
-    directions = np.fromfile(pairs, "<f4").astype(float).reshape(-1, 6)
-    evaluate(read_tensor_file(path), directions[:, :3], directions[:, 3:]).astype("<f8").tofile(out)
+    directions = np.fromfile(pairs, "<f4").astype(float).reshape(-1, 2, 3)
+    # The unit vectors that the floats stand for: where wo and wi nearly cancel, rounded lengths alone would
+    # turn the half vector.
+    directions /= np.linalg.norm(directions, axis=2, keepdims=True)
+    evaluate(read_tensor_file(path), directions[:, 0], directions[:, 1]).astype("<f8").tofile(out)
 
 
 if __name__ == "__main__":
