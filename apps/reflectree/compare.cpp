@@ -147,6 +147,10 @@ void show(const Context& context, const std::vector<MaterialResult>& all, const 
                            std::to_string(s.materials), fmt::format("{:.3g}", s.relative_efficiency),
                            std::to_string(s.biased_cells), std::to_string(s.faults)});
   }
+  if (v.materials == 0) {
+    context.print("no verdict: ours and a general competitor are wanted on one material at least\n");
+    return;
+  }
   context.print(to_text(scores));
   context.print(fmt::format(
       "\n{}  best of all general methods in geometric mean\n{}  best on nine materials in ten: {} of {}\n",

@@ -70,7 +70,9 @@ Verdict judge(std::span<const MaterialResult> materials, std::span<const Sampler
   }
   for (const MaterialResult& m : materials) {
     const SamplerResult* ours = best(m, samplers, is_ours);
-    if (!ours) continue;
+    const SamplerResult* other =
+        best(m, samplers, [](const SamplerInfo& info) { return info.general && !is_ours(info); });
+    if (!ours || !other) continue;
     ++verdict.materials;
     const double reference = efficiency(*ours);
     for (std::size_t k = 0; k < samplers.size(); ++k) {
@@ -84,9 +86,7 @@ Verdict judge(std::span<const MaterialResult> materials, std::span<const Sampler
       ++score.materials;
       logs[k] += std::log(e / reference);
     }
-    const SamplerResult* other =
-        best(m, samplers, [](const SamplerInfo& info) { return info.general && !is_ours(info); });
-    if (!other || efficiency(*other) <= reference) {
+    if (efficiency(*other) <= reference) {
       ++verdict.won;
     } else {
       verdict.losses.push_back(loss_of(m, *ours, *other, lights, options));

@@ -26,7 +26,7 @@ struct Loss {
 };
 
 struct Verdict {
-  int materials = 0, won = 0;  // where ours was measured
+  int materials = 0, won = 0;  // where ours and a general competitor were measured
   std::vector<Score> scores;   // as in the registry
   std::vector<Loss> losses;    // the worst first
   bool best_in_mean = false, nine_in_ten = false;
