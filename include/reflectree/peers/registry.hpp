@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every sampler that can be chosen by name: ours and the competitors, each from its paper. One enters with one
-// line in registry.cpp.
+// Every sampler that can be chosen by name: ours and the competitors, each from its paper. One enters with
+// one line in registry.cpp.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 #include "reflectree/brdf/material.hpp"
 #include "reflectree/sampler/any_sampler.hpp"
 #include "reflectree/sampler/host.hpp"
-#include "reflectree/sampler/sampler_data.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
 
 namespace reflectree {
 

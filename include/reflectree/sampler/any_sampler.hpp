@@ -62,8 +62,8 @@ class AnySampler {
   template <class S>
   struct Model final : Interface {
     S sampler;
-    Model(std::string name, std::size_t bytes, S s) : sampler(std::move(s)) {
-      this->name = std::move(name), this->bytes = bytes, this->has_pdf = DensitySampler<S>;
+    Model(std::string the_name, std::size_t the_bytes, S s) : sampler(std::move(s)) {
+      this->name = std::move(the_name), this->bytes = the_bytes, this->has_pdf = DensitySampler<S>;
     }
     std::optional<DirectionSample<V>> sample(Direction wo, UniformBits& u) const override {
       return sampler.sample(wo, u);
