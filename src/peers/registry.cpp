@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/peers/registry.hpp"
 
+#include "analytic_peers.hpp"
 #include "reflectree/sampler/sampler.hpp"
+#include "tabulated_peers.hpp"
 
 namespace reflectree {
 
@@ -50,6 +52,31 @@ constexpr SamplerInfo all[] = {
      true, exact},
     {"one-shot", "density of a tree, without rejection, by alias table", ours, true, true, one_shot},
     {"one-shot-monotone", "the same by monotone descent, for stratified points", ours, true, true, monotone},
+    {"paper", "quadtrees on the disk at tabulated elevations, rejection in the leaf; isotropic",
+     "Montes, Urena, Lastra and Garcia 2008", true, false, peers::paper},
+    {"uniform", "uniform over the hemisphere", "folklore", true, true, peers::uniform},
+    {"cosine", "cosine lobe, which is uniform over the projected disk", "folklore", true, true,
+     peers::cosine},
+    {"lafortune-willems", "cosine and cos^n lobe about the mirror direction, fitted",
+     "Lafortune and Willems 1994", true, true, peers::lafortune_willems},
+    {"textbook", "the samplers published with the analytic models", "the models' papers", false, true,
+     peers::textbook},
+    {"proxy", "cosine lobe and GGX's visible normals, fitted", "Dupuy and Benyoub 2023", true, true,
+     peers::proxy},
+    {"proxy-oracle", "the same, tuned for each elevation of wo to the least variance",
+     "Dupuy and Benyoub 2023", true, true, peers::proxy_oracle},
+    {"resampling", "one of eight candidates of the proxy, kept in proportion to the target",
+     "Talbot, Cline and Egbert 2005", true, true, peers::resampling},
+    {"cdf-table", "bilinear tables over slices of theta_o, inverted by their CDFs", "textbook", true, true,
+     make_cdf_table},
+    {"alias-table", "the same density, cells by alias table", "Walker 1977, Vose 1991", true, true,
+     make_alias_table},
+    {"adaptive-cdf", "cascaded CDFs reduced to polylines", "Lawrence, Rusinkiewicz, Ramamoorthi 2005", true,
+     true, make_adaptive_cdf},
+    {"wavelet", "thresholded Haar wavelets, warped down their quadtree",
+     "Claustres et al. 2003, Clarberg et al. 2005", true, false, make_wavelet},
+    {"warp-chain", "visible normals, then a table of the target in warped coordinates, fitted from any BRDF",
+     "Dupuy and Jakob 2018", true, false, make_warp_chain},
 };
 
 }  // namespace

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "reflectree/brdf/material.hpp"
+#include "reflectree/peers/lobe.hpp"
+
+namespace reflectree {
+
+// The samplers published with the models; a sum draws a term by its weight. nullopt: one of the terms has
+// none.
+std::optional<LobeMixture> textbook_mixture(const Material& material);
+
+}  // namespace reflectree

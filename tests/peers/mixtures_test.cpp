@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every sampler drawn from lobes is judged as ours are, and each judgement has a twin with a planted fault.
+// The variances lie where others measured them.
+#include <gtest/gtest.h>
+
+#include "reflectree/peers/fit_mixture.hpp"
+#include "reflectree/peers/registry.hpp"
+#include "reflectree/verify/chi_square.hpp"
+#include "reflectree/verify/consistency.hpp"
+#include "reflectree/verify/faults.hpp"
+
+namespace reflectree {
+namespace {
+
+Direction at(double theta_deg, double phi_deg = 0) {
+  return direction_from_angles(float(theta_deg * pi_v<double> / 180), float(phi_deg * pi_v<double> / 180));
+}
+
+struct Made {
+  PeerSubject subject;
+  AnySampler<Spectrum> sampler;
+};
+Made make(const char* name, const char* text) {
+  const Material material = parse_material(text);
+  PeerSubject subject{make_brdf(material), material, {}};
+  auto sampler = find_sampler(name)->make(subject, {});
+  return {subject, std::move(*sampler)};
+}
+ErasedSampler erased(const AnySampler<Spectrum>& s) {
+  ErasedSampler e = erase(s, {}, s.name());
+  if (!s.has_pdf()) e.pdf = nullptr;
+  return e;
+}
+
+struct Case {
+  const char* sampler;
+  const char* material;
+};
+class Mixtures : public ::testing::TestWithParam<Case> {};
+
+constexpr Case cases[] = {
+    {"uniform", "ggx:alpha=0.3"},
+    {"cosine", "plastic:alpha=0.3"},
+    {"lafortune-willems", "plastic:alpha=0.2"},
+    {"proxy", "ashikhmin_shirley"},
+    {"proxy-oracle", "cook_torrance"},
+    {"textbook", "ggx:alpha=0.3"},
+    {"textbook", "cook_torrance"},
+    {"textbook", "ward:alpha_x=0.1,alpha_y=0.4"},
+    {"textbook", "ashikhmin_shirley:n_x=20,n_y=200"},
+    {"textbook", "phong"},
+    {"textbook", "lafortune"},
+    {"textbook", "plastic"},
+    {"textbook", "0.5*lambert + 0.5*ggx:alpha=0.2"},
+};
+
+TEST_P(Mixtures, DirectionsFollowTheirOwnPdf) {
+  const auto [subject, sampler] = make(GetParam().sampler, GetParam().material);
+  // Bins of equal mass of the sampler's own density, which no test of f could hide a fault behind.
+  const ErasedSampler judged = erased(sampler);
+  const TargetFunction own{[&](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t) {
+    const Direction o{float(wo.x), float(wo.y), float(wo.z)};
+    for (std::size_t i = 0; i < wi.size(); ++i) {
+      const Direction w{float(wi[i].x), float(wi[i].y), float(wi[i].z)};
+      t[i] = wi[i].z > 0 ? double(sampler.pdf(o, w)) / wi[i].z : 0;
+    }
+  }};
+  ChiSquareOptions options;
+  options.samples = 300'000;
+  options.tests = 2 * int(std::size(cases));
+  for (const Direction wo : {at(30, 20), at(75, 200)}) {
+    const Bins bins = equal_mass_bins(own, wo, {200, 1e-3});
+    const Tally tally = tally_of(judged, bins, options);
+    const CheckResult counts = check_counts(tally, bins.mass, options);
+    EXPECT_TRUE(counts.passed) << to_line(counts);
+    // The mass that is missing is the rate of lost samples, within five standard errors.
+    const double lost = double(tally.none) / double(tally.samples);
+    EXPECT_NEAR(bins.total + lost, 1, 5 * std::sqrt((lost + 1e-6) / double(tally.samples)) + 1e-3);
+
+    const Tally spoiled = tally_of(bent(judged, 1, 0.04), bins, options);
+    EXPECT_FALSE(check_counts(spoiled, bins.mass, options).passed);
+    EXPECT_GT(std::abs(1.02 * bins.total + lost - 1), 5e-3);  // a pdf 2 % too large
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Mixtures, ::testing::ValuesIn(cases));
+
+class Unbiased : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Unbiased, WeightedCountsAreTheTarget) {
+  const auto [subject, sampler] = make(GetParam().sampler, GetParam().material);
+  const TargetFunction f = target_function(subject.f);
+  ChiSquareOptions options;
+  options.samples = 300'000;
+  options.tests = 2 * int(std::size(cases)) + 2;
+  for (const Direction wo : {at(30, 20), at(75, 200)}) {
+    const Bins bins = equal_mass_bins(f, wo, {100, 1e-3});
+    const Tally tally = tally_of(erased(sampler), bins, options);
+    const CheckResult weights = check_weights(tally, bins, options);
+    EXPECT_TRUE(weights.passed) << to_line(weights);
+    const CheckResult mean = check_mean_weight(tally, bins, options, 1e-3);
+    EXPECT_TRUE(mean.passed) << to_line(mean);
+    EXPECT_EQ(tally.invalid, 0U);
+
+    const Tally spoiled = tally_of(scaled_weight(erased(sampler), 1.1f), bins, options);
+    EXPECT_FALSE(check_mean_weight(spoiled, bins, options, 1e-3).passed);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Unbiased, ::testing::ValuesIn(cases));
+INSTANTIATE_TEST_SUITE_P(Resampling, Unbiased,
+                         ::testing::Values(Case{"resampling", "plastic"},
+                                           Case{"resampling", "cook_torrance"}));
+
+double variance_of(const AnySampler<Spectrum>& sampler, Direction wo, int samples = 400'000) {
+  const Target target;
+  Pcg32 u(3);
+  double sum = 0, sum2 = 0;
+  for (int i = 0; i < samples; ++i) {
+    const auto drawn = sampler.sample(wo, u);
+    const double w = drawn ? double(target(drawn->weight)) : 0;
+    sum += w, sum2 += w * w;
+  }
+  return sum2 * samples / (sum * sum) - 1;
+}
+
+// Relative variances of visible normals, measured on other people's code to two digits.
+TEST(Textbook, VisibleNormalsHaveTheVarianceThatIsKnown) {
+  constexpr double theta[] = {0, 30, 60, 80};
+  constexpr double rough[] = {.11, .11, .13, .09}, sharp[] = {.011, .012, .019, .057};
+  const auto a = make("textbook", "ggx:alpha=0.3,f0=1"), b = make("textbook", "ggx:alpha=0.1,f0=1");
+  const auto half = make("cosine", "ggx:alpha=0.3,f0=1");
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(variance_of(a.sampler, at(theta[i])), rough[i], 0.012) << theta[i];
+    EXPECT_NEAR(variance_of(b.sampler, at(theta[i])), sharp[i], 0.0012 + 0.03 * sharp[i]) << theta[i];
+    EXPECT_GT(std::abs(variance_of(half.sampler, at(theta[i])) - rough[i]), 0.012);  // the twin
+  }
+}
+
+TEST(Proxy, FindsAMixtureThatItCanMatch) {
+  const auto oracle = make("proxy-oracle", "plastic:alpha=0.1"), proxy = make("proxy", "plastic:alpha=0.1");
+  for (const double theta : {10., 45., 75.}) {
+    EXPECT_LT(variance_of(oracle.sampler, at(theta)), 0.1) << theta;
+    EXPECT_LT(variance_of(oracle.sampler, at(theta)), 1.02 * variance_of(proxy.sampler, at(theta)) + .002);
+  }
+}
+
+TEST(Textbook, IsNotMadeUpForWhatHasNone) {
+  const Material material = parse_material("low_smooth");
+  const PeerSubject subject{make_brdf(material), material, {}};
+  EXPECT_FALSE(find_sampler("textbook")->make(subject, {}).has_value());
+}
+
+}  // namespace
+}  // namespace reflectree
