@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How cost grows: with sharpness, with accuracy, with the cost of one evaluation of f, with the number of
-// materials. Prints Markdown; writes scaling-sharpness.svg into the folder named first.
+// How cost grows: with sharpness, with accuracy, with the cost of one evaluation of f. Prints Markdown;
+// writes scaling-sharpness.svg into the folder named first.
 #include <chrono>
 #include <cstdio>
 #include <iostream>
