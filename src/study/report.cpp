@@ -158,7 +158,7 @@ Figure error_figure(const MaterialResult& m, std::size_t light, const std::strin
       lines.push_back(std::move(line));
     }
   }
-  Figure f{520,
+  Figure f{540,
            360,
            std::string("Error over ") + (over_time ? "time" : "samples") + ", " + light_name,
            "Relative RMSE of reflected radiance, logarithmic axes.",
@@ -215,7 +215,7 @@ Figure heat_figure(const MaterialResult& m, std::size_t light, const std::string
   for (const SamplerResult& s : m.samplers) {
     if (!s.cells.empty()) rows.push_back(&s);
   }
-  Figure f{520,
+  Figure f{540,
            60 + 20. * double(rows.size()),
            "Cost against the best, " + light_name,
            "RMSE squared times time of each sampler and angle, over the best sampler at that angle.",
