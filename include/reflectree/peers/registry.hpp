@@ -3,6 +3,7 @@
 // line in registry.cpp.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -11,7 +12,7 @@
 #include "reflectree/brdf/material.hpp"
 #include "reflectree/sampler/any_sampler.hpp"
 #include "reflectree/sampler/host.hpp"
-#include "reflectree/sampler/sampler_data.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
 
 namespace reflectree {
 

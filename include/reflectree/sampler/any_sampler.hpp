@@ -62,8 +62,8 @@ class AnySampler {
   template <class S>
   struct Model final : Interface {
     S sampler;
-    Model(std::string name, std::size_t bytes, S s) : sampler(std::move(s)) {
-      this->name = std::move(name), this->bytes = bytes, this->has_pdf = DensitySampler<S>;
+    Model(std::string called, std::size_t size, S s) : sampler(std::move(s)) {
+      this->name = std::move(called), this->bytes = size, this->has_pdf = DensitySampler<S>;
     }
     std::optional<DirectionSample<V>> sample(Direction wo, UniformBits& u) const override {
       return sampler.sample(wo, u);
