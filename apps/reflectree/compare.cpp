@@ -14,6 +14,7 @@
 #include "measure.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/image.hpp"
 #include "reflectree/io/material_file.hpp"
 #include "table.hpp"
 
@@ -31,6 +32,7 @@ constexpr const char* built_in[] = {"lambert",       "oren_nayar",     "phong", 
 struct Options {
   std::vector<std::string> materials;
   std::string samplers, theta_o_deg, csv, html, resume;
+  std::vector<std::string> envmaps;
   bool quick = false;
 };
 
@@ -71,6 +73,38 @@ std::vector<const SamplerInfo*> chosen(const std::string& list) {
     for (const SamplerInfo& info : samplers()) all.push_back(&info);
   }
   return all;
+}
+
+// Row 0 of the picture is the zenith; luminance by ITU-R BT.709.
+Environment read_environment(const std::string& path) {
+  const Image image = read_image(path);
+  const int r = image.find("R"), g = image.find("G"), b = image.find("B");
+  if (r < 0 || g < 0 || b < 0) throw Error("no channels R, G, B", path, "give a picture in colour");
+  LatLong map{image.width, image.height, {}};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float* pixel = image.values.data() + image.index(x, y);
+      map.radiance.push_back(0.2126f * pixel[r] + 0.7152f * pixel[g] + 0.0722f * pixel[b]);
+    }
+  }
+  return make_environment(fs::path(path).stem().string(), std::move(map));
+}
+
+// The procedural ones; then those named, or those of the data folder.
+std::vector<Environment> read_lights(const Context& context, const Options& given) {
+  std::vector<Environment> lights = procedural_environments();
+  std::vector<std::string> paths;
+  for (const std::string& path : given.envmaps) paths.push_back(context.locate(path));
+  const fs::path folder = context.locate("envmaps");
+  std::error_code ignored;
+  if (paths.empty() && !given.quick && fs::is_directory(folder, ignored)) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.path().extension() == ".hdr") paths.push_back(entry.path().string());
+    }
+    std::sort(paths.begin(), paths.end());
+  }
+  for (const std::string& path : paths) lights.push_back(read_environment(path));
+  return lights;
 }
 
 std::string first_value(const char* path, const std::string& key) {
@@ -178,7 +212,7 @@ int run_compare(const Context& context, const Options& given) {
     Material material = parse(context, name);
     materials.push_back({name, material, load_material(context, material)});
   }
-  const std::vector<Environment> lights = procedural_environments();
+  const std::vector<Environment> lights = read_lights(context, given);
   const Json key = key_of(o, lights, wanted);
   if (!given.resume.empty()) {
     std::error_code ignored;
@@ -244,6 +278,8 @@ void add_compare(CLI::App& app, Context& context, Run& run) {
       ->type_name("NAME,...");
   command->add_option("--theta-o-deg", o->theta_o_deg, "Elevations of wo; nothing: 10,45,75,85")
       ->type_name("DEG,...");
+  command->add_option("--envmap", o->envmaps, "Equirectangular lights; nothing: the data folder's envmaps/")
+      ->type_name("FILE");
   command->add_flag("--quick", o->quick, "Fewer materials and samples: minutes");
   command->add_option("--csv", o->csv, "Write every cell to this file")->type_name("FILE");
   command->add_option("--html", o->html, "Write an offline page to this file")->type_name("FILE");

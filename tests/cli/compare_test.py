@@ -66,6 +66,7 @@ class Compare(ProgramTest):
         self.assert_error("no list of elevations", "compare", "lambert", "--theta-o-deg", "95")
         self.assert_error("did you mean", "compare", "lamber")
         self.write("file", b"x")
+        self.assert_error("file", "compare", "lambert", "--envmap", "file")
         self.assert_error("no folder", "compare", "lambert", "--resume", "file")
 
 
