@@ -4,76 +4,71 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflectree/math/square_maps.hpp"
+#include "reflectree/peers/paper_choice.hpp"
 
 namespace reflectree {
 
 namespace {
 
-struct Estimate {
-  double integral = 0, maximum = 0;
-};
-
-// I and M from the midpoints of a grid on the node's square; points outside of the disk count as zeros.
-Estimate estimate(const AnyBrdf& f, Target target, Direction wo, const PaperOptions& o,
-                  const PaperNode& node) {
-  std::vector<Direction> wi;
-  const double step = double(node.size) / o.grid;
-  for (int j = 0; j < o.grid; ++j) {
-    for (int i = 0; i < o.grid; ++i) {
-      const double x = double(node.x) + (i + 0.5) * step, y = double(node.y) + (j + 0.5) * step;
-      if (x * x + y * y >= 1) continue;
-      const Vec2<float> p{float(x), float(y)};
-      const Direction w =
-          o.area_preserving ? disk_to_hemisphere_equal_area(p) : disk_to_hemisphere_projected(p);
-      if (w.z > 0) wi.push_back(w);
-    }
-  }
-  const std::vector<Direction> wos(wi.size(), wo);
-  const auto channels = std::size_t(f.channels());
-  std::vector<float> values(wi.size() * channels);
-  f.eval(wos, wi, values);
-  Estimate e;
-  for (std::size_t k = 0; k < wi.size(); ++k) {
-    const double t =
-        double(target(&values[k * channels], int(channels))) * (o.area_preserving ? 2 * double(wi[k].z) : 1);
-    e.integral += t * step * step;
-    e.maximum = std::max(e.maximum, t);
-  }
-  return e;
-}
-
-// What a node weighs in the choice of a child: I, or, retrying from the root, the volume under the bounds.
-double mass_of(const PaperNode& node, bool by_volume) { return by_volume ? node.volume : node.integral; }
-
 bool inside(double x, double y) { return x * x + y * y < 1; }
 
 }  // namespace
 
+std::size_t paper_grid(const AnyBrdf& f, Target target, Direction wo, PaperMap map, const PaperNode& node,
+                       int side, std::vector<double>& values) {
+  values.assign(std::size_t(side * side), 0);
+  std::vector<Direction> wi;
+  std::vector<std::size_t> place;
+  const double step = double(node.size) / side;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      const auto w = lift(map, wo, double(node.x) + (i + 0.5) * step, double(node.y) + (j + 0.5) * step);
+      if (w) wi.push_back(*w), place.push_back(std::size_t(j * side + i));
+    }
+  }
+  const std::vector<Direction> wos(wi.size(), wo);
+  const auto channels = std::size_t(f.channels());
+  std::vector<float> raw(wi.size() * channels);
+  f.eval(wos, wi, raw);
+  for (std::size_t k = 0; k < wi.size(); ++k) {
+    values[place[k]] = double(target(&raw[k * channels], int(channels))) * double(wi[k].z) *
+                       solid_angle_per_area(map, wo, wi[k]);
+  }
+  return wi.size();
+}
+
 PaperTree build_paper_tree(const AnyBrdf& f, Target target, Direction wo, const PaperOptions& o) {
   PaperTree tree;
+  tree.wo = wo;
   std::vector<int> depth{0};
+  std::vector<double> values;
   const auto filled = [&](PaperNode node) {
-    const Estimate e = estimate(f, target, wo, o, node);
-    node.integral = e.integral, node.maximum = e.maximum;
-    node.volume = clip_to_disk(node).area() * e.maximum;
+    tree.evaluations += paper_grid(f, target, wo, o.map, node, o.grid, values);
+    const double cell = double(node.size) * double(node.size) / double(values.size());
+    for (const double t : values) node.integral += t * cell, node.maximum = std::max(node.maximum, t);
+    node.volume = clip_to_disk(node).area() * node.maximum;
     return node;
   };
   tree.nodes.push_back(filled({-1, -1, 2}));
+  double total = tree.nodes[0].integral;  // as well as the leaves know it
   // Breadth first: where max_leaves ends the work, it ends it evenly.
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const PaperNode node = tree.nodes[i];
     // The square around the disk is split three times in any case: a coarser grid misses lobes altogether.
-    if (depth[i] >= 3 && o.n_max * node.integral >= node.volume) continue;
-    if (depth[i] >= o.max_depth || tree.nodes.size() + 4 > o.max_leaves / 3 * 4) {
-      ++tree.unmet;
-      continue;
+    if (depth[i] >= 3) {
+      if (o.n_max * node.integral >= node.volume) continue;
+      const bool negligible = node.volume < o.negligible * total;
+      if (negligible || depth[i] >= o.max_depth || tree.nodes.size() + 4 > o.max_leaves / 3 * 4) {
+        ++tree.unmet;
+        continue;
+      }
     }
     tree.nodes[i].first_child = int(tree.nodes.size());
     const float half = node.size / 2;
+    total -= node.integral;
     for (int c = 0; c < 4; ++c) {
-      const PaperNode child{node.x + (c & 1 ? half : 0), node.y + (c & 2 ? half : 0), half};
-      tree.nodes.push_back(filled(child));
+      tree.nodes.push_back(filled({node.x + (c & 1 ? half : 0), node.y + (c & 2 ? half : 0), half}));
+      total += tree.nodes.back().integral;
       depth.push_back(depth[i] + 1);
     }
   }
@@ -87,7 +82,12 @@ PaperTree build_paper_tree(const AnyBrdf& f, Target target, Direction wo, const 
       node.integral += child.integral, node.volume += child.volume;
     }
   }
+  if (o.choice == PaperChoice::alias) tree.buckets = make_paper_buckets(tree, o.retry_from_root);
   return tree;
+}
+
+std::size_t bytes_of(const PaperTree& tree) {
+  return sizeof(tree) + tree.nodes.size() * sizeof(PaperNode) + tree.buckets.size() * sizeof(PaperBucket);
 }
 
 PaperBox clip_to_disk(const PaperNode& n) {
@@ -103,45 +103,6 @@ PaperBox clip_to_disk(const PaperNode& n) {
   (b.x0 >= 0 ? b.x1 : b.x0) = b.x0 >= 0 ? std::min(b.x1, reach(near_y)) : std::max(b.x0, -reach(near_y));
   (b.y0 >= 0 ? b.y1 : b.y0) = b.y0 >= 0 ? std::min(b.y1, reach(near_x)) : std::max(b.y0, -reach(near_x));
   return b;
-}
-
-std::size_t choose_paper_leaf(const PaperTree& tree, double u, bool by_volume) {
-  std::size_t i = 0;
-  while (tree.nodes[i].first_child >= 0) {
-    const auto first = std::size_t(tree.nodes[i].first_child);
-    double rest = u * mass_of(tree.nodes[i], by_volume), chosen_mass = 0;
-    std::size_t chosen = first;
-    for (std::size_t c = first; c < first + 4; ++c) {
-      const double mass = mass_of(tree.nodes[c], by_volume);
-      if (!(mass > 0)) continue;
-      chosen = c, chosen_mass = mass;
-      if (rest < mass) break;
-      if (c < first + 3) rest -= mass;
-    }
-    u = chosen_mass > 0 ? std::clamp(rest / chosen_mass, 0.0, 0x1.fffffffffffffp-1) : 0;
-    i = chosen;
-  }
-  return i;
-}
-
-void divide_paper_count(const PaperTree& tree, std::size_t n, UniformBits& u, bool by_volume,
-                        std::span<std::size_t> counts) {
-  counts[0] = n;  // children come after their parents
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    if (tree.nodes[i].first_child < 0) continue;
-    const auto first = std::size_t(tree.nodes[i].first_child);
-    const double total = mass_of(tree.nodes[i], by_volume), offset = to_unit_double(u());
-    double cumulative = 0;
-    std::size_t before = 0;
-    for (std::size_t c = 0; c < 4; ++c) {
-      cumulative += mass_of(tree.nodes[first + c], by_volume);
-      const double edge = total > 0 ? cumulative / total * double(counts[i]) + offset : 0;
-      const std::size_t upto = c == 3 ? counts[i] : std::min(std::size_t(edge), counts[i]);
-      counts[first + c] = std::max(upto, before) - before;
-      before = std::max(before, upto);
-    }
-    counts[i] = 0;
-  }
 }
 
 }  // namespace reflectree

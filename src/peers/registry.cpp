@@ -57,7 +57,7 @@ constexpr SamplerInfo all[] = {
      true, exact},
     {"one-shot", "density of a tree, without rejection, by alias table", ours, true, true, one_shot},
     {"one-shot-monotone", "the same by monotone descent, for stratified points", ours, true, true, monotone},
-    {"paper", "quadtrees on the disk at tabulated elevations, rejection in the leaf; isotropic",
+    {"paper", "quadtrees on the disk at 90 elevations, mixed between two, rejection in the leaf; isotropic",
      "Montes, Urena, Lastra and Garcia 2008", true, false, peers::paper},
     {"uniform", "uniform over the hemisphere", "folklore", true, true, peers::uniform},
     {"cosine", "cosine lobe, which is uniform over the projected disk", "folklore", true, true,

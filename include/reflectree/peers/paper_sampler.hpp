@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Montes et al. 2008: a leaf of the tree, then rejection in it, by f at the true wo. Trees stand at the
-// middles of equal ranges of theta_o, the incident plane at phi_o = 0, or there is a single one for a given
-// wo. The claimed density is the paper's, f / I_0, with the I_0 of the tree: wrong by as much as the
-// estimates of I and M are, and between two tabulated elevations by as much as f moves. It is biased, and the
-// registry says so.
+// Montes et al. 2008: a leaf of the tree, then rejection in it. The paper says: density q = f / I_0 for the
+// wo of a tree; for isotropic functions, trees at discrete theta_o, with the incident plane at phi_o = 0. How
+// many, and what serves a wo between two of them, is read into it, in its favour: directions are drawn from
+// the tables' own functions and weighted by their density, f(tabulated wo, wi) / I_0, and the weight
+// f_cos / pdf carries the rest. So nothing is biased by the tables' distance, wherever one of them has the
+// support of f; the variance grows with it. Ninety trees, at the middles of a degree each: MERL's own step.
+//
+// What stays wrong is the paper's: the density claimed is right only as far as the estimates of I and M are
+// (paper_statistics.hpp), and the registry says so: the mean weight of nine models lies within .8 % of the
+// albedo, mostly above, with 8 x 8 points a node, and within .1 % with 32 x 32 at four times the leaves.
 #pragma once
 
 #include <memory>
+#include <span>
 
+#include "reflectree/math/uniform_bits.hpp"
 #include "reflectree/peers/paper_tree.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
 #include "reflectree/sampler/host.hpp"
@@ -20,7 +27,7 @@ class PaperSampler {
 
   // Isotropic functions only; throws Error.
   PaperSampler(AnyBrdf f, Target target, const PaperOptions& options = {}, const Host& host = {});
-  // For this wo alone, any function; asked about another wo it takes the same tree.
+  // For this wo, any function; asked about another wo it draws from the same tree.
   PaperSampler(AnyBrdf f, Target target, Direction wo, const PaperOptions& options = {});
   // From trees made elsewhere, in order of theta_o.
   PaperSampler(AnyBrdf f, Target target, std::vector<PaperTree> trees, bool fixed_wo,
@@ -28,12 +35,16 @@ class PaperSampler {
 
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u) const {
-    std::optional<DirectionSample<Value>> out;
-    with_bits(u, [&](UniformBits& bits) { out = draw(wo, bits); });
-    return out;
+    if constexpr (std::same_as<U, UniformBits>) {
+      return draw(wo, u);
+    } else {
+      UniformBits bits(u);
+      auto drawn = draw(wo, bits);
+      u = bits.rest();
+      return drawn;
+    }
   }
   // N divided among the leaves by the CDF of the children, then rejection in each; ordered by leaf.
-  // Allocates its counts: one traversal serves all N.
   std::size_t sample_n(Direction wo, UniformBits& u, std::span<DirectionSample<Value>> out) const;
 
   float pdf(Direction wo, Direction wi) const;
@@ -41,21 +52,22 @@ class PaperSampler {
   const std::vector<PaperTree>& trees() const { return *trees_; }
 
  private:
-  template <class Body>
-  static void with_bits(UniformBits& u, const Body& body) {
-    body(u);
-  }
-  template <class Body>
-  static void with_bits(Pcg32& u, const Body& body) {
-    UniformBits bits(u);
-    body(bits);
-    u = bits.rest();
-  }
-  const PaperTree& tree_of(Direction wo) const;
+  // What serves one wo: one tree, or two with their shares. wo is turned to phi_o = 0 unless it is fixed.
+  struct Reading {
+    Direction wo;
+    const PaperTree* trees[2] = {nullptr, nullptr};
+    double shares[2] = {1, 0};
+  };
+  Reading reading(Direction wo) const;
   std::optional<DirectionSample<Value>> draw(Direction wo, UniformBits& u) const;
-  // One trial in the leaf; nullopt: rejected.
-  std::optional<DirectionSample<Value>> trial(const PaperTree& tree, const PaperNode& leaf, Direction wo,
-                                              UniformBits& u) const;
+  // One trial in the leaf, at (u, v) of its rectangle: wi for the tree's wo; nullopt: rejected.
+  std::optional<Direction> trial(const PaperTree& tree, const PaperNode& leaf, double u, double v,
+                                 double height) const;
+  // The sample for the true wo, from a direction that `tree` accepted; nullopt: below its horizon.
+  std::optional<DirectionSample<Value>> finished(const Reading& r, Direction wo, const PaperTree& tree,
+                                                 Direction wi) const;
+  // Per solid angle, of wi for r.wo.
+  double density(const Reading& r, Direction wi) const;
 
   AnyBrdf f_;
   Target target_;

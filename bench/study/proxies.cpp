@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Medians over the materials of a table of fits (such as the 100 SGD fits of MERL): relative standard
+// deviation of the weight's target, for the samplers that know a material by a few numbers. Printed as the
+// Markdown of its table.
+//   study_proxies FITS.csv [norm|luminance] [samples]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "reflectree/error.hpp"
+#include "reflectree/io/material_file.hpp"
+#include "reflectree/peers/registry.hpp"
+
+namespace reflectree {
+namespace {
+
+constexpr const char* names[] = {"cosine", "proxy", "proxy-oracle"};
+constexpr double thetas_deg[] = {10, 45, 75};
+
+// NaN where no sample carried anything.
+double relative_deviation(const AnySampler<Spectrum>& sampler, Target target, Direction wo, int samples) {
+  Pcg32 u(7);
+  double sum = 0, sum2 = 0;
+  for (int i = 0; i < samples; ++i) {
+    const auto drawn = sampler.sample(wo, u);
+    const double w = drawn ? double(target(drawn->weight)) : 0;
+    sum += w, sum2 += w * w;
+  }
+  return std::sqrt(std::max(0.0, sum2 * samples / (sum * sum) - 1));
+}
+
+double quantile(std::vector<double> values, double q) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[std::size_t(q * double(values.size() - 1) + 0.5)];
+}
+
+int run(const std::string& path, Target target, int samples) {
+  const std::vector<std::string> members = list_members(path);
+  std::printf("| sampler | theta_o | median | 90th percentile |\n|---|---|---|---|\n");
+  for (const char* name : names) {
+    std::vector<double> deviations[std::size(thetas_deg)];
+    for (const std::string& member : members) {
+      const PeerSubject subject{load_brdf(path, member), {}, target};
+      const auto sampler = find_sampler(name)->make(subject, {});
+      if (!sampler) continue;
+      for (std::size_t k = 0; k < std::size(thetas_deg); ++k) {
+        const Direction wo = direction_from_angles(float(thetas_deg[k] * pi_v<double> / 180), 0.f);
+        deviations[k].push_back(relative_deviation(*sampler, target, wo, samples));
+      }
+    }
+    for (std::size_t k = 0; k < std::size(thetas_deg); ++k) {
+      std::printf("| %s | %g | %.3f | %.3f |\n", name, thetas_deg[k], quantile(deviations[k], 0.5),
+                  quantile(deviations[k], 0.9));
+    }
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace reflectree
+
+int main(int count, char** words) {
+  if (count < 2) return std::fprintf(stderr, "study_proxies FITS.csv [norm|luminance] [samples]\n"), 2;
+  reflectree::Target target;
+  if (count > 2 && std::string(words[2]) == "luminance") target.kind = reflectree::TargetKind::luminance;
+  try {
+    return reflectree::run(words[1], target, count > 3 ? std::atoi(words[3]) : 100'000);
+  } catch (const reflectree::Error& e) {
+    return std::fprintf(stderr, "%s\n", e.what()), 1;
+  }
+}
