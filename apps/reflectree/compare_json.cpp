@@ -3,8 +3,8 @@
 
 namespace reflectree::study {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cell, target_variance, sum_variance, worst_variance, dead, bias,
-                                   bias_interval, biased, sample_ns, pdf_ns, floor_ns, error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cell, target_variance, sum_variance, worst_variance, dead, by_density,
+                                   bias, bias_interval, biased, sample_ns, pdf_ns, floor_ns, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorCurve, n, random, stratified)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SamplerResult, sampler, fault, bytes, build_seconds, cells, curves)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaterialResult, material, albedo, albedo_error, samplers)
@@ -24,6 +24,7 @@ Json key_of(const StudyOptions& o, std::span<const Environment> lights,
             std::span<const SamplerInfo* const> samplers) {
   Json key{{"theta_o_deg", o.theta_o_deg},
            {"samples", o.samples},
+           {"mean_of", o.mean_of},
            {"curve_repeats", o.curve_repeats},
            {"curve_samples", o.curve_samples},
            {"cubature_evaluations", o.cubature_evaluations},
@@ -48,7 +49,8 @@ std::string csv_of(std::span<const MaterialResult> materials, std::span<const En
     return out + "\"";
   };
   std::string out =
-      "material,sampler,theta_o_deg,target_variance,sum_variance,worst_variance,dead,bias,bias_interval,"
+      "material,sampler,theta_o_deg,target_variance,sum_variance,worst_variance,by_density,dead,bias,bias_"
+      "interval,"
       "biased,"
       "sample_ns,pdf_ns,floor_ns,bytes,build_seconds";
   for (const Environment& light : lights) out += "," + quoted("error " + light.name);
@@ -58,10 +60,10 @@ std::string csv_of(std::span<const MaterialResult> materials, std::span<const En
       for (std::size_t i = 0; i < s.cells.size(); ++i) {
         const study::Cell& c = s.cells[i];
         out += fmt::format(
-            "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.4g},{:.4g},{:.4g},{},{:.4g}",
+            "{},{},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{},{:.4g},{:.4g},{:.4g},{},{:.4g}",
             quoted(m.material), s.sampler, o.theta_o_deg[i], c.target_variance, c.sum_variance,
-            c.worst_variance, c.dead, c.bias, c.bias_interval, int(c.biased), c.sample_ns, c.pdf_ns,
-            c.floor_ns, s.bytes, s.build_seconds);
+            c.worst_variance, int(c.by_density), c.dead, c.bias, c.bias_interval, int(c.biased), c.sample_ns,
+            c.pdf_ns, c.floor_ns, s.bytes, s.build_seconds);
         for (const double e : c.error) out += fmt::format(",{:.6g}", e);
         out += "\n";
       }

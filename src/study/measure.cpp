@@ -12,8 +12,6 @@ namespace reflectree::study {
 
 namespace {
 
-constexpr std::size_t group = 16;  // samples whose pairs give the variance under a light
-
 std::uint64_t seed_of(std::uint64_t seed, const std::string& name, std::uint64_t part) {
   std::uint64_t hash = 14695981039346656037ULL ^ seed;  // FNV-1a
   for (const char c : name) hash = (hash ^ std::uint8_t(c)) * 1099511628211ULL;
@@ -21,39 +19,6 @@ std::uint64_t seed_of(std::uint64_t seed, const std::string& name, std::uint64_t
   hash = (hash ^ (hash >> 30U)) * 0xbf58476d1ce4e5b9ULL;  // SplitMix64, Steele et al. 2014
   hash = (hash ^ (hash >> 27U)) * 0x94d049bb133111ebULL;
   return hash ^ (hash >> 31U);
-}
-
-// Mean and variance of one number, by Welford 1962.
-struct Moments {
-  double n = 0, mean = 0, m2 = 0;
-  void add(double x) {
-    n += 1;
-    const double d = x - mean;
-    mean += d / n;
-    m2 += d * (x - mean);
-  }
-  double variance() const { return n > 1 ? m2 / (n - 1) : 0; }
-  double relative() const { return mean > 0 ? variance() / (mean * mean) : 0; }
-};
-
-double product(const Spectrum& a, const Spectrum& b) {
-  double sum = 0;
-  for (int c = 0; c < std::min(a.channels(), b.channels()); ++c) sum += double(a[c]) * double(b[c]);
-  return sum;
-}
-
-// The mean over all pairs of a group of (X - X')^2 / 2, averaged over rotations; see environment.hpp.
-double paired_variance(std::span<const DirectionSample<Spectrum>> s, const Environment& light) {
-  double squares = 0, products = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    squares += product(s[i].weight, s[i].weight);
-    for (std::size_t k = 0; k < i; ++k) {
-      const double w = product(s[i].weight, s[k].weight);
-      if (w > 0) products += w * light.correlation_at(double(dot(s[i].wi, s[k].wi)));
-    }
-  }
-  const auto n = double(s.size());
-  return light.mean_square * squares / n - 2 * products / (n * (n - 1));
 }
 
 void measure_time(const AnySampler<Spectrum>& sampler, Direction wo, const StudyOptions& o, Cell& cell) {
@@ -83,70 +48,24 @@ void measure_time(const AnySampler<Spectrum>& sampler, Direction wo, const Study
 }
 
 SamplerResult measure_sampler(const SamplerInfo& info, const AnySampler<Spectrum>& sampler,
-                              const StudyMaterial& material, const MaterialResult& reference,
-                              std::span<const Environment> lights, const StudyOptions& o, const Host& host) {
+                              const StudyMaterial& material, const MaterialResult& known,
+                              std::span<const ReferenceDraws> reference, std::span<const Environment> lights,
+                              const StudyOptions& o, const Host& host) {
   SamplerResult result;
   result.sampler = info.name;
   result.bytes = sampler.bytes();
   for (std::size_t i = 0; i < o.theta_o_deg.size(); ++i) {
     if (host.cancelled()) throw Cancelled();
     const Direction wo = direction_from_angles(float(o.theta_o_deg[i] * pi_v<double> / 180), 0.f);
-    result.cells.push_back(measure_cell(sampler, {}, wo, reference.albedo[i], reference.albedo_error[i],
-                                        lights, o, seed_of(o.seed, material.name, i)));
+    result.cells.push_back(measure_cell(sampler, {}, wo, known.albedo[i], known.albedo_error[i], lights, o,
+                                        seed_of(o.seed, material.name, i),
+                                        reference.empty() ? nullptr : &reference[i]));
     measure_time(sampler, wo, o, result.cells.back());
   }
   return result;
 }
 
 }  // namespace
-
-Cell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Direction wo, double albedo,
-                  double albedo_error, std::span<const Environment> lights, const StudyOptions& o,
-                  std::uint64_t seed) {
-  UniformBits u{Pcg32(seed, 1)};
-  Moments of_target, of_sum;
-  std::vector<Moments> of_channel;
-  std::vector<DirectionSample<Spectrum>> drawn;
-  Cell cell;
-  cell.error.assign(lights.size(), 0);
-  std::uint32_t dead = 0;
-  for (std::uint32_t start = 0; start < o.samples; start += std::uint32_t(group)) {
-    drawn.clear();
-    for (std::size_t i = 0; i < group; ++i) {
-      auto s = sampler.sample(wo, u);
-      if (!s) s = DirectionSample<Spectrum>{{0, 0, 1}, 0, Spectrum(int(of_channel.size())), 0};
-      const Spectrum& w = s->weight;
-      const auto channels = std::size_t(w.channels());
-      // The first samples may have been none, of unknown channels: those weigh zero in all of them.
-      if (of_channel.size() < channels) of_channel.resize(channels, Moments{of_target.n, 0, 0});
-      double sum = 0;
-      for (std::size_t c = 0; c < channels; ++c) {
-        sum += double(w[int(c)]);
-        of_channel[c].add(double(w[int(c)]));
-      }
-      of_sum.add(sum);
-      const double t = channels ? double(target(w)) : 0;
-      of_target.add(t);
-      dead += !(t > 0);
-      drawn.push_back(*s);
-    }
-    for (std::size_t e = 0; e < lights.size(); ++e) cell.error[e] += paired_variance(drawn, lights[e]);
-  }
-  const double groups = double(o.samples) / double(group);
-  for (std::size_t e = 0; e < lights.size(); ++e) {
-    cell.error[e] /= groups * sqr(lights[e].mean * albedo);
-  }
-  cell.target_variance = of_target.relative();
-  cell.sum_variance = of_sum.relative();
-  for (const Moments& m : of_channel) cell.worst_variance = max(cell.worst_variance, m.relative());
-  cell.dead = double(dead) / double(o.samples);
-  cell.bias = of_target.mean / albedo - 1;
-  const double se = std::sqrt(of_target.variance() / of_target.n) / albedo, open = albedo_error / albedo;
-  cell.bias_interval = 1.96 * se + open;
-  // The albedo of exact mode is tabulated to 1e-4 by design: a stated error, not a bias of the method.
-  cell.biased = std::abs(cell.bias) > 5 * se + open + 1.5e-4;
-  return cell;
-}
 
 MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInfo* const> samplers,
                        std::span<const Environment> lights, const StudyOptions& o, const Host& host) {
@@ -173,10 +92,21 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
   BuildOptions build_options;
   build_options.seed = o.seed;
   double our_seconds = 0;
-  if (std::any_of(samplers.begin(), samplers.end(), [](const SamplerInfo* s) { return is_ours(*s); })) {
+  std::vector<ReferenceDraws> reference;
+  try {
     const double start = thread_seconds();
     subject.packed = std::make_shared<const PackedSampler>(pack(build(material.f, build_options, alone)));
     our_seconds = thread_seconds() - start;
+    const auto exact = find_sampler("exact")->make(subject, alone);
+    reference.resize(angles);
+    host.parallel_for(angles, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Direction wo = direction_from_angles(float(o.theta_o_deg[i] * pi_v<double> / 180), 0.f);
+        reference[i] = reference_draws(*exact, wo, lights, o, seed_of(o.seed, material.name, i));
+      }
+    });
+  } catch (const Error&) {
+    reference.clear();  // our modes will say it again, as their fault
   }
   std::vector<std::optional<SamplerResult>> found(samplers.size());
   host.parallel_for(samplers.size(), [&](std::size_t begin, std::size_t end) {
@@ -187,7 +117,7 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
         const auto sampler = info.make(subject, alone);
         const double seconds = thread_seconds() - start + (is_ours(info) ? our_seconds : 0);
         if (!sampler) continue;
-        found[i] = measure_sampler(info, *sampler, material, result, lights, o, host);
+        found[i] = measure_sampler(info, *sampler, material, result, reference, lights, o, host);
         found[i]->build_seconds = seconds;
         const Direction wo = direction_from_angles(float(curve_theta_o_deg * pi_v<double> / 180), 0.f);
         found[i]->curves = measure_curves(*sampler, wo, result.albedo[angles], lights, o,

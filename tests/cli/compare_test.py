@@ -61,6 +61,22 @@ class Compare(ProgramTest):
         self.assertNotIn("http", page)
         self.assertIn("ggx:alpha=0.4", page)
 
+    def test_a_measured_light(self):
+        # 8 x 4 pixels of (1, .5, .25) and exponent 129: radiances 1, .5, .25, flat records.
+        self.write("grey.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + bytes([128, 64, 32, 129]) * 32)
+        found = self.json_of(*TWO, "--envmap", "grey.hdr")
+        name, mean, mean_square = found["options"]["lights"][-1]
+        luminance = 0.2126 + 0.7152 * 0.5 + 0.0722 * 0.25
+        self.assertEqual(name, "grey")
+        self.assertAlmostEqual(mean, luminance, 4)
+        self.assertAlmostEqual(mean_square, luminance**2, 4)
+        # Under a light that is the same everywhere only the weight varies, and in exact mode it does not.
+        for sampler in found["materials"][0]["samplers"]:
+            if sampler["sampler"] == "exact":
+                self.assertLess(sampler["cells"][0]["error"][-1], 1e-4)
+        lights = len(found["options"]["lights"])
+        self.assertEqual(len(found["materials"][0]["samplers"][0]["cells"][0]["error"]), lights)
+
     def test_errors(self):
         self.assert_error("no sampler 'exat'", "compare", "lambert", "--samplers", "exat")
         self.assert_error("no list of elevations", "compare", "lambert", "--theta-o-deg", "95")

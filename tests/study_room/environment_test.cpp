@@ -66,7 +66,7 @@ TEST(Environment, AgreesWithExplicitRotations) {
       make_environment("disk", map_of(8, 1024, [](double theta, double) { return theta < 0.6 ? 1. : 0.; })),
       procedural_environments()[1]};
   StudyOptions o;
-  o.curve_samples = 4, o.curve_repeats = 48'000, o.samples = 1U << 17U;
+  o.curve_samples = 4, o.curve_repeats = 48'000, o.samples = 1U << 17U, o.mean_of = 0;
   const AnySampler<Spectrum> cosine("cosine", CosineToy{brdf("phong:kd=0.3,ks=0.5,n=20")});
   const Direction wo = direction_from_angles(0.7f, 0.f);
   const Cell c = measure_cell(cosine, {}, wo, 1, 0, lights, o, 5);

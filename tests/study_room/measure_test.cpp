@@ -66,6 +66,61 @@ TEST(Cell, SmoothLobeIsUnbiasedAgainstCubature) {
   EXPECT_TRUE(bad.biased) << bad.bias << " +- " << bad.bias_interval;
 }
 
+ReferenceDraws exact_draws(const AnyBrdf& f, const StudyOptions& o) {
+  const PeerSubject subject{f, {}, {}, nullptr};
+  return reference_draws(*find_sampler("exact")->make(subject, {}), wo, {}, o, 17);
+}
+
+// E[w^2] = 2 pi int (t cos_i)^2 by cubature: 2^12 samples of their own see a small part of it, draws of exact
+// mode the whole.
+TEST(Cell, WeightsSeldomDrawnAreSeenThroughTheDensity) {
+  const AnyBrdf f = brdf("ggx:alpha=0.004");
+  StudyOptions o;
+  o.samples = 1U << 12U;
+  const TargetFunction target = target_function(f);
+  const double albedo = reference_albedo(target, wo).value;
+  TargetFunction squared = target;  // so that t' cos_i = (t cos_i)^2
+  squared.eval = [&](Vec3<double> o3, std::span<const Vec3<double>> wi, std::span<double> t) {
+    target.eval(o3, wi, t);
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] *= t[i] * wi[i].z;
+  };
+  const double truth = 2 * pi_v<double> * reference_albedo(squared, wo).value / sqr(albedo) - 1;
+  const AnySampler<Spectrum> uniform("uniform", DenseUniformToy{f});
+  const Cell own = measure_cell(uniform, {}, wo, albedo, 0, {}, o, 3);
+  EXPECT_LT(own.target_variance, 0.7 * truth);
+  EXPECT_FALSE(own.by_density);
+  const ReferenceDraws reference = exact_draws(f, o);
+  const Cell seen = measure_cell(uniform, {}, wo, albedo, 0, {}, o, 3, &reference);
+  EXPECT_TRUE(seen.by_density);
+  EXPECT_NEAR(seen.target_variance / truth, 1, 0.05);
+  EXPECT_FALSE(seen.biased);  // the interval knows how little was seen
+}
+
+// Uniform directions under the claim of a cosine lobe, which on Lambert would have no variance.
+TEST(Cell, ADensityThatIsNotDrawnFromDoesNotCount) {
+  const AnyBrdf f = brdf("lambert:rho=0.5");
+  StudyOptions o;
+  o.samples = 1U << 14U;
+  const ReferenceDraws reference = exact_draws(f, o);
+  const Cell honest = measure_cell({"u", DenseUniformToy{f}}, {}, wo, grey, 0, {}, o, 3, &reference);
+  EXPECT_TRUE(honest.by_density);
+  EXPECT_NEAR(honest.target_variance, 1. / 3, 0.01);
+  const Cell lying = measure_cell({"u", DenseUniformToy{f, true}}, {}, wo, grey, 0, {}, o, 3, &reference);
+  EXPECT_FALSE(lying.by_density);
+  EXPECT_NEAR(lying.target_variance, 1. / 3, 0.02);
+}
+
+// Every weight 2 % too large: N times its square enters the error, less the interval of 1e-7.
+TEST(Cell, BiasEntersTheError) {
+  const AnyBrdf f = brdf("lambert:rho=0.5");
+  const std::vector<Environment> lights{procedural_environments()[1]};
+  StudyOptions o;
+  o.samples = 1U << 12U;
+  const Cell good = measure_cell({"cosine", CosineToy{f}}, {}, wo, grey, 1e-7, lights, o, 3);
+  const Cell bad = measure_cell({"cosine", CosineToy{f, 1.02f}}, {}, wo, grey, 1e-7, lights, o, 3);
+  EXPECT_NEAR(bad.error[0] - sqr(1.02) * good.error[0], 1024 * sqr(0.02), 1e-3);
+}
+
 Host many_chunks() {
   Host host;
   host.parallel_for = [](std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) {

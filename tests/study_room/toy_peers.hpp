@@ -19,6 +19,20 @@ struct CosineToy {
   float pdf(Direction, Direction wi) const { return wi.z / pi; }
 };
 
+// Uniform in solid angle with its density, which a fault claims to be that of the cosine lobe.
+struct DenseUniformToy {
+  using Value = Spectrum;
+  AnyBrdf f;
+  bool lying = false;
+  template <RandomBits U>
+  std::optional<DirectionSample<Spectrum>> sample(Direction wo, U& u) const {
+    const float z = 1 - to_unit_float(u()), phi = 2 * pi * to_unit_float(u()), r = sqrt(max(0.f, 1 - z * z));
+    const Direction wi{r * cos(phi), r * sin(phi), z};
+    return DirectionSample<Spectrum>{wi, pdf(wo, wi), scaled(eval(f, wo, wi), 2 * pi * z)};
+  }
+  float pdf(Direction, Direction wi) const { return lying ? wi.z / pi : 1 / (2 * pi); }
+};
+
 // Uniform in solid angle; loses every direction with phi in the first `lost` of a turn, and has no pdf().
 struct UniformToy {
   using Value = Spectrum;

@@ -13,6 +13,7 @@ namespace reflectree::study {
 struct StudyOptions {
   std::vector<double> theta_o_deg{10, 45, 75, 85};
   std::uint32_t samples = 1U << 16U;  // a cell; a multiple of 16
+  std::uint32_t mean_of = 1024;       // samples in the mean whose RMSE counts: there bias tells
   int curve_repeats = 32;             // runs behind each point of an error curve
   std::uint32_t curve_samples = 1024;
   double round_seconds = 2e-3;  // a seventh of the time spent on a timing
@@ -25,10 +26,16 @@ struct StudyOptions {
 struct Cell {
   double target_variance = 0, sum_variance = 0, worst_variance = 0;  // relative, of the weight
   double dead = 0;                                                   // share of weight 0 and of none
+  bool by_density = false;             // the variances are from draws of exact mode: see ReferenceDraws
   double bias = 0, bias_interval = 0;  // mean weight / cubature - 1, and half its 95 % interval
   bool biased = false;                 // beyond five standard errors and what cubature leaves open
+  // What is left of |bias| without its interval: no method pays for what cannot be told from noise.
+  double sure_bias() const { return std::max(0., std::abs(bias) - bias_interval); }
   double sample_ns = 0, pdf_ns = 0, floor_ns = 0;  // pdf_ns 0: no density; floor: polar cosine hemisphere
-  std::vector<double> error;  // a light: RMSE^2 of one sample, relative to (mean light * albedo)^2
+  // A light: N RMSE^2 of the mean of N = mean_of samples, relative to (mean light * albedo)^2: the variance
+  // of one sample + N sure_bias^2. Under a light that is not uniform the bias may be larger, never smaller in
+  // the mean: a biased method is let off lightly.
+  std::vector<double> error;
   double efficiency(std::size_t light) const { return 1 / (error[light] * sample_ns * 1e-9); }
 };
 
@@ -64,10 +71,24 @@ struct StudyMaterial {
 MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInfo* const> samplers,
                        std::span<const Environment> lights, const StudyOptions& options, const Host& host);
 
-// The parts, for tests.
+// Of a density p that falls far below a sharp target f, the weights that make the variance are seldom drawn,
+// and it seems small. But with draws of exact mode, of density q ~ f and weights v = f / q,
+//   E_p[w^2] = E_q[v^2 q / p],
+// and its estimate never varies more: with r = q / p that is E_p[r^3] <= E_p[r^4], for moments grow beyond
+// the first, E_p[r] = 1 (Lyapunov). So wherever a method has a density it is judged by these draws, unless
+// its own samples vary more than the density admits: then they are not of that density, and they count.
+struct ReferenceDraws {
+  std::vector<DirectionSample<Spectrum>> draws;  // a multiple of 16
+  std::vector<double> products;                  // a light: the mean of v.v' C(angle(wi, wi'))
+};
+ReferenceDraws reference_draws(const AnySampler<Spectrum>& exact, Direction wo,
+                               std::span<const Environment> lights, const StudyOptions& options,
+                               std::uint64_t seed);
+
+// The parts, for tests. `reference`: null where there is none.
 Cell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Direction wo, double albedo,
                   double albedo_error, std::span<const Environment> lights, const StudyOptions& options,
-                  std::uint64_t seed);
+                  std::uint64_t seed, const ReferenceDraws* reference = nullptr);
 std::vector<ErrorCurve> measure_curves(const AnySampler<Spectrum>& sampler, Direction wo, double albedo,
                                        std::span<const Environment> lights, const StudyOptions& options,
                                        std::uint64_t seed);
