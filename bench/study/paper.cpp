@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's results again, as far as one sampler and light can show them: the law of the error against N,
-// which is a check that can fail (exit code 1), and the cost of precomputation. Prints Markdown; writes
-// paper-law.svg into the folder named first.
+// The paper's results again: pictures, error against samples and time, the law of the error against N, which
+// is a check that can fail (exit code 1), and the cost of precomputation. Prints Markdown; writes its
+// pictures into the folder named first. Measured materials are those of REFLECTREE_DATA: a few, or all after
+// --all.
 #include <cstdio>
 #include <iostream>
+
+#include "judged.hpp"
+#include "paper_parts.hpp"
 
 #include "reflectree/draw/figure.hpp"
 #include "reflectree/draw/plot.hpp"
@@ -29,13 +33,10 @@ struct Law {
 
 Law law(std::string name, const ErrorCurve& curve, const std::vector<double>& square) {
   Law l{std::move(name), {}, {}, 0};
-  double m = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < curve.n.size(); ++i) {
     l.n.push_back(curve.n[i]), l.rmse.push_back(std::sqrt(square[i]));
-    const double x = std::log(l.n.back()), y = std::log(l.rmse.back());
-    m += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
-  l.slope = (m * sxy - sx * sy) / (m * sxx - sx * sx);
+  l.slope = log_slope(l.n, l.rmse);
   return l;
 }
 
@@ -137,10 +138,27 @@ void show_precomputation(const AnyBrdf& f) {
 
 int main(int argc, char** argv) {
   try {
+    std::string folder;
+    bool all = false;
+    for (int i = 1; i < argc; ++i) {
+      if (std::string(argv[i]) == "--all") {
+        all = true;
+      } else {
+        folder = argv[i];
+      }
+    }
     const AnyBrdf f = make_brdf(parse_material(text));
-    std::printf("# The paper's results again\n\n");
-    const bool holds = show_law(f, argc > 1 ? argv[1] : "");
+    std::printf(
+        "# The paper's results again\n\nColumns with (*) are timings, on one thread. The rest depends on "
+        "nothing "
+        "but the code and the seed. The slopes are a check: the program ends with exit code 1 if one "
+        "fails.\n\n");
+    show_pictures(folder);
+    show_few_against_many();
+    const bool holds = show_law(f, folder);
+    show_time();
     show_precomputation(f);
+    show_measured(all);
     return holds ? 0 : 1;
   } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';

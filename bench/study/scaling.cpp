@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How cost grows: with sharpness, with accuracy, with the cost of one evaluation of f. Prints Markdown;
-// writes scaling-sharpness.svg into the folder named first.
+// How cost grows: with sharpness, with accuracy, with the cost of one evaluation of f, with threads and
+// materials, and that of the competitors. Prints Markdown; writes its plots into the folder named first.
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -12,6 +12,7 @@
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/study/measure.hpp"
 #include "reflectree/study/thread_time.hpp"
+#include "scaling_parts.hpp"
 
 namespace {
 
@@ -112,7 +113,10 @@ struct Slow {
 };
 
 int run(const std::string& folder) {
-  std::printf("# How cost grows\n\nColumns with (*) are timings.\n\n");
+  std::printf(
+      "# How cost grows\n\nLeaves, KiB, trials and variance depend on nothing but the code. Columns with (*) "
+      "are "
+      "timings.\n\n");
   std::vector<Row> rows;
   for (const float alpha : {1.f, 0.5f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f, 0.005f, 0.002f, 0.001f}) {
     Ggx f;
@@ -120,6 +124,7 @@ int run(const std::string& folder) {
     rows.push_back(measure_build(double(alpha), AnyBrdf(f), {}));
   }
   print("Sharpness", "alpha of GGX", rows);
+  std::printf("![Leaves against sharpness](scaling-sharpness.svg)\n\n");
   if (!folder.empty()) write_file_atomically(folder + "/scaling-sharpness.svg", draw::to_svg(plot(rows)));
   Ggx f;
   f.alpha = 0.1f;
@@ -156,6 +161,9 @@ int run(const std::string& folder) {
       "## Cost of one evaluation\n\n    build/bin/study_scaling docs/results\n\n"
       "| ns burnt beside f | exact ns (*) | one-shot ns (*) |\n|---|---|---|\n");
   for (const Row& r : rows) std::printf("| %g | %.0f | %.0f |\n", r.x, r.exact_ns, r.one_shot_ns);
+  show_threads();
+  show_materials();
+  show_competitors(folder);
   return 0;
 }
 

@@ -15,9 +15,11 @@ std::string study_html(std::span<const MaterialResult> materials, const Verdict&
                        std::span<const Environment> lights, const StudyOptions& options,
                        const StudyMeta& meta);
 
-// RMSE over samples, or over time (microseconds), both logarithmic; a curve a sampler, labelled at its end.
+// RMSE over samples, or over time (microseconds), both logarithmic, at the theta_o nearest to 45 degrees: a
+// curve a sampler, labelled at its end. Random points follow the law var / n + bias^2 of the cell, stratified
+// ones what was measured.
 draw::Figure error_figure(const MaterialResult& material, std::size_t light, const std::string& light_name,
-                          bool over_time);
+                          const StudyOptions& options, bool over_time);
 // One number a sampler on a log scale; those not above 0 are left out.
 struct Bar {
   std::string name;
