@@ -159,6 +159,10 @@ BrdfTraits RglTable::traits() const {
   BrdfTraits traits;
   traits.name = name;
   traits.theta_o_knots = theta_o_;
+  // 1 / sigma is piecewise linear in u, in steps of less than a degree.
+  traits.theta_o_factor = [sigma = sigma_](double theta_o) {
+    return 1 / double(interpolate(sigma, elevation_to_u(float(theta_o))));
+  };
   return traits;
 }
 

@@ -118,9 +118,9 @@ void advance(Integral& integral, double relative_error) {
   for (const Region& r : integral.regions) {
     integral.value += r.value, integral.error += r.error, square += r.error * r.error;
   }
-  // The rule overestimates its errors, and those of kinks have random signs: six times the root of the
+  // The rule overestimates its errors, and those of kinks have random signs: three times the root of the
   // sum of squares bounds them, where the plain sum would ask for every kink of a table to be resolved.
-  integral.error = min(integral.error, 6 * std::sqrt(square));
+  integral.error = min(integral.error, 3 * std::sqrt(square));
   const double allowed = relative_error * integral.value;
   if (integral.error <= allowed || integral.regions.size() >= max_regions) {
     integral.done = true;
@@ -235,20 +235,28 @@ double interpolate(const std::array<double, 5>& v, int step, double t) {
   return sum;
 }
 
-// Appends the entries of the panel after `lo`, halving until lines in the cosine miss the polynomial by at
-// most `error`, relatively.
-void tabulate(const Panel& panel, const std::array<double, 5>& v, double t0, double t1, double error,
-              int depth, std::map<float, double>& table) {
-  const auto cosine_at = [&](double t) { return std::cos(panel.lo + 0.25 * t * (panel.hi - panel.lo)); };
-  const double a0 = interpolate(v, 1, t0), a1 = interpolate(v, 1, t1), mid = 0.5 * (t0 + t1);
-  const double c0 = cosine_at(t0), c1 = cosine_at(t1), middle = interpolate(v, 1, mid);
-  const double line = a0 + (cosine_at(mid) - c0) / (c1 - c0) * (a1 - a0);
-  if (depth > 0 && std::abs(line - middle) > error * middle) {
-    tabulate(panel, v, t0, mid, error, depth - 1, table);
-    tabulate(panel, v, mid, t1, error, depth - 1, table);
+using Factor = std::function<double(double theta_o)>;
+
+// Appends the entries of the panel after `lo`, halving until lines in the cosine miss the polynomial times
+// the factor by at most `error`, relatively.
+void tabulate(const Panel& panel, const std::array<double, 5>& v, const Factor& factor, double t0, double t1,
+              double error, int depth, std::map<float, double>& table) {
+  const auto theta_at = [&](double t) { return panel.lo + 0.25 * t * (panel.hi - panel.lo); };
+  const auto cosine_at = [&](double t) { return std::cos(theta_at(t)); };
+  const auto albedo = [&](double t) { return interpolate(v, 1, t) * factor(theta_at(t)); };
+  const double a0 = albedo(t0), a1 = albedo(t1), c0 = cosine_at(t0), c1 = cosine_at(t1);
+  const double mid = 0.5 * (t0 + t1);
+  bool good = true;  // at the quarters too: a kink may meet the line in the middle
+  for (const double t : {mid, 0.5 * (t0 + mid), 0.5 * (mid + t1)}) {
+    const double line = a0 + (cosine_at(t) - c0) / (c1 - c0) * (a1 - a0), curve = albedo(t);
+    good = good && std::abs(line - curve) <= error * curve;
+  }
+  if (depth > 0 && !good) {
+    tabulate(panel, v, factor, t0, mid, error, depth - 1, table);
+    tabulate(panel, v, factor, mid, t1, error, depth - 1, table);
     return;
   }
-  table[cosine_of(panel.lo + 0.25 * t1 * (panel.hi - panel.lo))] = max(a1, 0.);
+  table[cosine_of(theta_at(t1))] = max(a1, 0.);
 }
 
 }  // namespace
@@ -267,6 +275,9 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
   std::sort(borders.begin(), borders.end());
   borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
 
+  // The nodes hold the albedo without the factor that the function knows of.
+  const Factor known = field.f.traits().theta_o_factor;
+  const Factor factor = [&known](double theta_o) { return known ? known(theta_o) : 1.; };
   std::vector<Panel> open, closed;
   for (std::size_t i = 0; i + 1 < borders.size(); ++i) open.push_back({borders[i], borders[i + 1]});
   std::map<double, double> nodes;
@@ -286,7 +297,7 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
       }
     }
     const std::vector<double> a = integrate(field, cosines, cubature_error, host, evaluations);
-    for (std::size_t i = 0; i < a.size(); ++i) nodes[fresh[i]] = a[i];
+    for (std::size_t i = 0; i < a.size(); ++i) nodes[fresh[i]] = a[i] / factor(fresh[i]);
     std::vector<Panel> next;
     for (const Panel& panel : open) {
       // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less.
@@ -305,8 +316,10 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
     }
     open = std::move(next);
   }
-  std::map<float, double> entries{{1.f, nodes[borders.front()]}};
-  for (const Panel& panel : closed) tabulate(panel, values_of(panel), 0, 4, interpolation_error, 8, entries);
+  std::map<float, double> entries{{1.f, nodes[borders.front()] * factor(borders.front())}};
+  for (const Panel& panel : closed) {
+    tabulate(panel, values_of(panel), factor, 0, 4, interpolation_error, 8, entries);
+  }
   AlbedoTable table;
   for (const auto& [c, a] : entries) table.cos_theta_o.push_back(c), table.albedo.push_back(float(a));
   table.relative_error = relative_error;

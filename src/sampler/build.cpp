@@ -109,10 +109,17 @@ std::size_t leaf_count(const std::vector<Slab>& slabs) {
   return count;
 }
 
-double volume(const Slab& slab) {
-  double sum = 0;
-  for (const Node& node : slab.nodes) sum += node.split == Split::leaf ? double(node.leaf.cost) : 0.;
-  return sum;
+// Cost and ideal of a slab's leaves together; in exact mode the cost is the volume under the bounds.
+struct Total {
+  double cost = 0, ideal = 0;
+};
+Total total_of(const Slab& slab) {
+  Total total;
+  for (const Node& node : slab.nodes) {
+    if (node.split == Split::leaf)
+      total.cost += double(node.leaf.cost), total.ideal += double(node.leaf.ideal);
+  }
+  return total;
 }
 
 // Grows, attacks the bounds, and grows again while the raised bounds cost more trials than allowed.
@@ -134,7 +141,7 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
     bool dear = false;
     for (std::size_t s = 0; s < slabs.size(); ++s) {
       first_new[s] = slabs[s].nodes.size();
-      dear = dear || volume(slabs[s]) > double(options.expected_trials);
+      dear = dear || total_of(slabs[s]).cost > double(options.expected_trials);
     }
     if (!dear && report.overshoot_mass <= accepted_overshoot) break;
     if (dear && pass + 1 < max_passes) {  // what grows last is attacked, too
@@ -142,18 +149,36 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
       grow(slabs, field, albedo, rules, host, &report.evaluations);
     }
   }
-  for (const Slab& slab : slabs) report.expected_trials = max(report.expected_trials, float(volume(slab)));
+  for (const Slab& slab : slabs)
+    report.expected_trials = max(report.expected_trials, float(total_of(slab).cost));
+  return slabs;
+}
+
+// Grows, looks between the points of the grids, and grows again where a slab shows more variance than
+// allowed.
+std::vector<Slab> build_one_shot(std::vector<Slab> slabs, const Field& field, const AlbedoTable& albedo,
+                                 const BuildOptions& options, const Host& host, BuildReport& report) {
+  constexpr int max_passes = 4;
+  GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
+  rules.progress = 0.9f;
+  for (int pass = 0; pass < max_passes; ++pass) {
+    grow(slabs, field, albedo, rules, host, &report.evaluations);
+    probe_density(slabs, options.seed + 2000003ULL * std::uint64_t(pass + 1), field, albedo, host,
+                  &report.evaluations);
+    const bool met = std::all_of(slabs.begin(), slabs.end(), [&](const Slab& slab) {
+      const Total total = total_of(slab);
+      return total.cost <= double(rules.goal) * total.ideal;
+    });
+    if (met) break;
+  }
   return slabs;
 }
 
 float median_variance(const std::vector<Slab>& slabs) {
   std::vector<double> variance;
   for (const Slab& slab : slabs) {
-    double cost = 0, ideal = 0;
-    for (const Node& node : slab.nodes) {
-      if (node.split == Split::leaf) cost += double(node.leaf.cost), ideal += double(node.leaf.ideal);
-    }
-    if (ideal > 0) variance.push_back(sqr(cost / ideal) - 1);
+    const Total total = total_of(slab);
+    if (total.ideal > 0) variance.push_back(sqr(total.cost / total.ideal) - 1);
   }
   if (variance.empty()) return 0;
   std::nth_element(variance.begin(), variance.begin() + std::ptrdiff_t(variance.size() / 2), variance.end());
@@ -181,10 +206,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& options, const Host& hos
   for (const Slab& slab : exact) data.exact.push_back(majorant_tree(slab));
   host.progress(0.9f);
 
-  std::vector<Slab> one_shot = slabs;
-  GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
-  rules.progress = 0.9f;
-  grow(one_shot, field, data.albedo, rules, host, &data.report.evaluations);
+  const std::vector<Slab> one_shot = build_one_shot(slabs, field, data.albedo, options, host, data.report);
   data.one_shot_partition = partition_of(one_shot);
   for (const Slab& slab : one_shot) data.one_shot.push_back(density_tree(slab));
   data.report.one_shot_variance = median_variance(one_shot);

@@ -174,14 +174,8 @@ void split_node(Slab& slab, std::uint32_t index, const Domain& domain) {
   }
 }
 
-// Where one point towers over the grid, the longer side closes in on it.
+// Where one point towers over the grid, the cut closes in on it.
 bool towers(const Leaf& leaf, float over) { return leaf.seen > 2 * over; }
-bool close_in_along_x(const Leaf& leaf) {
-  // Towards the pole along the radius; elsewhere the longer side.
-  if (abs(leaf.seen_at.y) < 0.3f / float(1U << leaf.cell.level_y)) return false;
-  return leaf.cell.level_x <= leaf.cell.level_y;
-}
-
 bool may_split(Leaf& leaf) {
   if ((leaf.split_x ? leaf.cell.level_x : leaf.cell.level_y) < max_level) return true;
   leaf.split_x = !leaf.split_x;
@@ -189,6 +183,11 @@ bool may_split(Leaf& leaf) {
 }
 
 }  // namespace
+
+bool close_in_along_x(const Leaf& leaf) {
+  if (abs(leaf.seen_at.y) < 0.3f / float(1U << leaf.cell.level_y)) return false;
+  return leaf.cell.level_x <= leaf.cell.level_y;
+}
 
 Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Domain& domain) {
   constexpr int landmark_steps = 12;

@@ -108,6 +108,10 @@ std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
 void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albedo, const GrowthRules& rules,
           const Host& host, std::uint64_t* evaluations);
 
+// The cut that closes in on seen_at, whatever the grid says: towards the pole along the radius, elsewhere the
+// longer side.
+bool close_in_along_x(const Leaf& leaf);
+
 // The shape q of a leaf at p.
 float shape(const Leaf& leaf, const Box& box, Vec2<float> p);
 

@@ -30,10 +30,9 @@ FieldPoint point_of(const Climber& c, const float at[3]) {
 }
 
 // T / (albedo q): what the leaf's bound must reach at p.
-float ratio_of(const AlbedoTable& albedo, const Leaf& leaf, const Box& box, const FieldPoint& p,
-               FieldValue v) {
+float ratio_of(const AlbedoTable& albedo, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
   const float a = albedo_at(albedo, p.cos_theta_o);
-  return a > 0 ? v.upper / (a * shape(leaf, box, p.p)) : 0.f;
+  return a > 0 ? v / (a * shape(leaf, box, p.p)) : 0.f;
 }
 
 // Coordinate steps up and down each axis, all climbers in one batch; steps shrink where none helps.
@@ -61,7 +60,7 @@ void climb(std::vector<Climber>& climbers, int rounds, const Field& field, const
         float r[6];
         for (int k = 0; k < 6; ++k) {
           const std::size_t j = i * 6 + std::size_t(k);
-          r[k] = ratio_of(albedo, *c.leaf, c.box, points[j], values[j]);
+          r[k] = ratio_of(albedo, *c.leaf, c.box, points[j], values[j].upper);
         }
         // Along each axis move to the better side, if it is better than here; else come closer.
         const Climber before = c;
@@ -124,54 +123,49 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
   for (const Climber& c : climbers) raise(c, c.value * (1 + margin));
 }
 
-float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
-            const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations) {
-  struct Target {
-    std::uint32_t slab, node;
-    std::size_t first, count;
-  };
+namespace {
+
+// Random points of one leaf in a batch: its first and how many.
+struct ProbedLeaf {
+  std::uint32_t slab, node;
+  std::size_t first, count;
+};
+
+// Draws count(slab, leaf) points uniformly in every leaf (counts of 0 leave it out), evaluates them in
+// batches and hands each leaf its ratios T / (albedo q), of the upper or the mean of mirror images:
+// visit(probed, points, ratios).
+template <class Count, class Visit>
+void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue::*image, const Field& field,
+                  const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations, Count&& count_of,
+                  Visit&& visit) {
   constexpr std::size_t batch = std::size_t(1) << 20U;
-  std::vector<double> overshoot(slabs.size(), 0);
   std::vector<FieldPoint> points;
   std::vector<FieldValue> values;
-  std::vector<Target> targets;
-  std::vector<Climber> climbers;
+  std::vector<float> ratios;
+  std::vector<ProbedLeaf> probed;
   const auto flush = [&] {
-    values.resize(points.size());
+    values.resize(points.size()), ratios.resize(points.size());
     eval_in_parallel(field, host, points, values);
     *evaluations += points.size();
-    for (const Target& t : targets) {
-      Slab& slab = slabs[t.slab];
-      Leaf& leaf = slab.nodes[t.node].leaf;
-      const Box box = box_of(leaf.cell, field.domain);
-      double excess = 0;
-      float worst = leaf.share;
-      std::size_t where = 0;
-      for (std::size_t i = t.first; i < t.first + t.count; ++i) {
-        const float r = ratio_of(albedo, leaf, box, points[i], values[i]);
-        if (r > leaf.share) excess += double(r - leaf.share);
-        if (r > worst) worst = r, where = i;
+    host.parallel_for(probed.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Leaf& leaf = slabs[probed[k].slab].nodes[probed[k].node].leaf;
+        const Box box = box_of(leaf.cell, field.domain);
+        for (std::size_t i = probed[k].first; i < probed[k].first + probed[k].count; ++i) {
+          ratios[i] = ratio_of(albedo, leaf, box, points[i], values[i].*image);
+        }
       }
-      if (excess > 0) {
-        overshoot[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
-        const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
-        climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
-      }
-    }
-    points.clear(), targets.clear();
+    });
+    for (const ProbedLeaf& p : probed) visit(p, points, ratios);
+    points.clear(), probed.clear();
   };
   for (std::uint32_t s = 0; s < slabs.size(); ++s) {
-    Slab& slab = slabs[s];
-    const std::vector<std::uint32_t> leaves = leaves_in_order(slab);
-    double total = 0;
-    for (const std::uint32_t i : leaves) total += double(slab.nodes[i].leaf.cost);
-    for (const std::uint32_t i : leaves) {
-      const Leaf& leaf = slab.nodes[i].leaf;
-      const double fair = double(leaf.cost) / total * double(leaves.size());
-      const auto count = std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
+    for (const std::uint32_t i : leaves_in_order(slabs[s])) {
+      const std::size_t count = count_of(slabs[s], i);
+      if (count == 0) continue;
       Pcg32 u(seed + s, i);
-      const Climber c = start_at(slab, slab.nodes[i].leaf, {}, 0, 0, field.domain);
-      targets.push_back({s, i, points.size(), count});
+      const Climber c = start_at(slabs[s], slabs[s].nodes[i].leaf, {}, 0, 0, field.domain);
+      probed.push_back({s, i, points.size(), count});
       for (std::size_t k = 0; k < count; ++k) {
         const float at[3] = {to_unit_float(u()), to_unit_float(u()), to_unit_float(u())};
         points.push_back(point_of(c, at));
@@ -180,9 +174,76 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
     }
   }
   flush();
+}
+
+}  // namespace
+
+float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
+            const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations) {
+  std::vector<double> overshoot(slabs.size(), 0), mean_cost;
+  for (const Slab& slab : slabs) {
+    double total = 0;
+    const std::vector<std::uint32_t> leaves = leaves_in_order(slab);
+    for (const std::uint32_t i : leaves) total += double(slab.nodes[i].leaf.cost);
+    mean_cost.push_back(total / double(leaves.size()));
+  }
+  std::vector<Climber> climbers;
+  const auto count = [&](const Slab& slab, std::uint32_t i) {
+    const double fair = double(slab.nodes[i].leaf.cost) / mean_cost[std::size_t(&slab - slabs.data())];
+    return std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
+  };
+  const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
+                         const std::vector<float>& ratios) {
+    Slab& slab = slabs[t.slab];
+    Leaf& leaf = slab.nodes[t.node].leaf;
+    double excess = 0;
+    float worst = leaf.share;
+    std::size_t where = 0;
+    for (std::size_t i = t.first; i < t.first + t.count; ++i) {
+      if (ratios[i] > leaf.share) excess += double(ratios[i] - leaf.share);
+      if (ratios[i] > worst) worst = ratios[i], where = i;
+    }
+    if (!(excess > 0)) return;
+    overshoot[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
+    const Box box = box_of(leaf.cell, field.domain);
+    const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
+    climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
+  };
+  probe_leaves(slabs, seed, &FieldValue::upper, field, albedo, host, evaluations, count, visit);
   climb(climbers, 6, field, albedo, host, evaluations);
   for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->share + margin * c.value);
   return float(*std::max_element(overshoot.begin(), overshoot.end()));
+}
+
+void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Field& field,
+                   const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations) {
+  constexpr double doubtful = 1.5;  // more than the scatter of honest leaves
+  const auto count = [](const Slab& slab, std::uint32_t i) {
+    return std::size_t(64 + 8192 * area_share(slab.nodes[i].leaf.cell));
+  };
+  const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
+                         const std::vector<float>& ratios) {
+    Leaf& leaf = slabs[t.slab].nodes[t.node].leaf;
+    const Box box = box_of(leaf.cell, field.domain);
+    double sum = 0, sum2 = 0;  // of T^2 / (albedo^2 q), whose mean is the square of the best share
+    for (std::size_t i = t.first; i < t.first + t.count; ++i) {
+      const float v = ratios[i] * shape(leaf, box, points[i].p);
+      const double square = double(ratios[i]) * double(v);
+      sum += square, sum2 += square * square;
+      if (v > leaf.seen) {
+        leaf.seen = v, leaf.seen_at = points[i].p, leaf.seen_theta = acos(points[i].cos_theta_o);
+      }
+    }
+    const double n = double(t.count), square = sum / n;
+    const double error = std::sqrt(max(sum2 / n - square * square, 0.) / n);
+    const float area = area_share(leaf.cell);
+    const double believed = sqr(double(leaf.cost / area));
+    if (square <= doubtful * believed || square - error <= believed) return;
+    leaf.cost = area * float(std::sqrt(square));
+    leaf.share = max(leaf.share, float(std::sqrt(square)));
+    leaf.split_x = close_in_along_x(leaf);
+  };
+  probe_leaves(slabs, seed, &FieldValue::mean, field, albedo, host, evaluations, count, visit);
 }
 
 }  // namespace reflectree::detail

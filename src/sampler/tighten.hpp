@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimated bounds of exact mode: what "exact" rests on for a black box. After growth each leaf's bound is
 // the largest value seen on its grid; here it is attacked, by local maximisation from that point and by
-// random probes where the sampler itself would land, and raised.
+// random probes where the sampler itself would land, and raised. And the same doubt for the densities of
+// one-shot mode, where a value between the points of a grid costs variance.
 #pragma once
 
 #include "grow.hpp"
@@ -17,5 +18,10 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
 // leaf past the value found. Returns the largest mass of overshoot seen in any slab, before the raise.
 float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
             const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
+
+// Random probes in every leaf of one-shot trees: where they show, beyond doubt, a larger root mean square
+// than the grid did, the leaf's cost is raised to it, so that growth goes on there.
+void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Field& field,
+                   const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
 
 }  // namespace reflectree::detail

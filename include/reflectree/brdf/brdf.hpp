@@ -6,6 +6,7 @@
 //   f.eval(wo, wi, out)        batches over spans; both directions vary
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -17,13 +18,12 @@
 namespace reflectree {
 
 template <class F>
-concept DirectionBrdf =
-    std::is_invocable_v<const F&, Direction, Direction> &&
+concept DirectionBrdf = std::is_invocable_v<const F&, Direction, Direction> &&
     BrdfValue<std::remove_cvref_t<std::invoke_result_t<const F&, Direction, Direction>>>;
 template <class F>
-concept GeometryBrdf =
-    std::is_invocable_v<const F&, const ShadingGeometry<float>&> &&
-    BrdfValue<std::remove_cvref_t<std::invoke_result_t<const F&, const ShadingGeometry<float>&>>>;
+concept GeometryBrdf = std::is_invocable_v < const F&,
+        const ShadingGeometry<float>
+& > &&BrdfValue<std::remove_cvref_t<std::invoke_result_t<const F&, const ShadingGeometry<float>&>>>;
 template <class F>
 concept Brdf = GeometryBrdf<F> || DirectionBrdf<F>;
 
@@ -61,11 +61,14 @@ ValueOf<F> eval(const F& f, Direction wo, Direction wi) {
 
 // What a function may tell about itself. The builder verifies what it can.
 struct BrdfTraits {
-  std::string name = "lambda";        // canonical material text where there is one
+  std::string name = "lambda";  // canonical material text where there is one
   int channels = 3;
-  bool isotropic = true;              // depends on phi_o - phi_i only
-  bool concurrent = true;             // false: called from one thread (a Python callback)
-  std::vector<float> theta_o_knots;   // radians: elevations where f has kinks in theta_o
+  bool isotropic = true;             // depends on phi_o - phi_i only
+  bool concurrent = true;            // false: called from one thread (a Python callback)
+  std::vector<float> theta_o_knots;  // radians: elevations where f has kinks in theta_o
+  // A factor of f that depends on theta_o (radians) alone, > 0; empty: none known. Albedo tables interpolate
+  // what is left of the albedo without it, so that its kinks cost no integral.
+  std::function<double(double)> theta_o_factor;
 };
 
 template <class F>
@@ -76,7 +79,9 @@ concept BatchBrdf = Brdf<F> && requires(const F& f, std::span<const Direction> w
 template <Brdf F>
 BrdfTraits traits_of(const F& f) {
   BrdfTraits traits;
-  if constexpr (requires { { f.traits() } -> std::convertible_to<BrdfTraits>; }) {
+  if constexpr (requires {
+                  { f.traits() } -> std::convertible_to<BrdfTraits>;
+                }) {
     traits = f.traits();
   }
   if constexpr (std::is_same_v<ValueOf<F>, float>) traits.channels = 1;
