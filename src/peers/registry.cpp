@@ -3,6 +3,7 @@
 
 #include "analytic_peers.hpp"
 #include "reflectree/sampler/sampler.hpp"
+#include "tabulated_peers.hpp"
 
 namespace reflectree {
 
@@ -66,6 +67,16 @@ constexpr SamplerInfo all[] = {
      "Dupuy and Benyoub 2023", true, true, peers::proxy_oracle},
     {"resampling", "one of eight candidates of the proxy, kept in proportion to the target",
      "Talbot, Cline and Egbert 2005", true, true, peers::resampling},
+    {"cdf-table", "bilinear tables over slices of theta_o, inverted by their CDFs", "textbook", true, true,
+     make_cdf_table},
+    {"alias-table", "the same density, cells by alias table", "Walker 1977, Vose 1991", true, true,
+     make_alias_table},
+    {"adaptive-cdf", "cascaded CDFs reduced to polylines", "Lawrence, Rusinkiewicz, Ramamoorthi 2005", true,
+     true, make_adaptive_cdf},
+    {"wavelet", "thresholded Haar wavelets, warped down their quadtree",
+     "Claustres et al. 2003, Clarberg et al. 2005", true, false, make_wavelet},
+    {"warp-chain", "visible normals, then a table of the target in warped coordinates, fitted from any BRDF",
+     "Dupuy and Jakob 2018", true, false, make_warp_chain},
 };
 
 }  // namespace

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chain of warps of Dupuy and Jakob 2018, "An Adaptive Parameterization for Efficient Material
+// Acquisition and Rendering": uniform points become points of the table of the target, those become visible
+// normals, and a normal reflects wo. Fitted from any BRDF: the normals' distribution by power iteration on
+// its retro-reflection. As published it loses samples below the horizon, and mass where all nodes of a cell,
+// or the retro-reflection, are zero while the function is not.
+#pragma once
+
+#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/target.hpp"
+#include "reflectree/peers/bilinear_table.hpp"
+#include "reflectree/sampler/host.hpp"
+
+namespace reflectree {
+
+// D over x = sqrt(2 theta_h / pi), `count` equal steps from 0 to 1; the projected area of the normal is 1.
+std::vector<float> retro_normals(const AnyBrdf& f, Target target, int count);
+
+// One slice of theta_o, over the half_vector chart.
+struct WarpSlice {
+  BilinearTable normals, target;
+
+  struct Pair {
+    const WarpSlice &a, &b;
+    float t;
+    Vec2<float> sample(UniformBits& u) const {
+      const Vec2<float> s = BilinearTable::Pair{a.target, b.target, t}.sample(u);
+      return BilinearTable::Pair{a.normals, b.normals, t}.warp(double(s.x), double(s.y));
+    }
+    float pdf(Vec2<float> p) const {
+      const BilinearTable::Pair visible{a.normals, b.normals, t};
+      const Vec2<double> s = visible.unwarp(p);
+      return visible.pdf(p) * BilinearTable::Pair{a.target, b.target, t}.pdf({float(s.x), float(s.y)});
+    }
+  };
+  std::size_t bytes() const { return normals.bytes() + target.bytes(); }
+};
+
+std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std::vector<float>& theta_o,
+                                      const Host& host = {});
+
+}  // namespace reflectree

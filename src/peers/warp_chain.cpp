@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/peers/warp_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "reflectree/peers/tabulate.hpp"
+
+namespace reflectree {
+namespace {
+
+constexpr int ndf_size = 256, warp_width = 128, warp_height = 64, target_size = 32;
+
+// int_0^2pi max(0, wo . wm) dphi for elevations o and m.
+double mean_clamped_cosine(double o, double m) {
+  const double a = std::cos(o) * std::cos(m), b = std::sin(o) * std::sin(m), full = 2 * double(pi);
+  if (a >= b) return full * a;
+  const double phi = std::acos(std::max(-a / b, -1.0));
+  return 2 * (a * phi + b * std::sin(phi));
+}
+
+}  // namespace
+
+std::vector<float> retro_normals(const AnyBrdf& f, Target target, int count) {
+  const auto n = std::size_t(count);
+  std::vector<Direction> w(n);
+  std::vector<double> theta(n), measure(n), retro(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = double(i) / double(n - 1);
+    theta[i] = std::min(0.5 * double(pi) * x * x, 0.5 * double(pi) - 1e-4);
+    measure[i] = std::sin(theta[i]) * double(pi) * x / double(n - 1);
+    w[i] = direction_from_angles(float(theta[i]), 0.f);
+  }
+  const auto channels = std::size_t(f.channels());
+  std::vector<float> value(n * channels);
+  f.eval(w, w, value);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = double(target(value.data() + i * channels, f.channels())) * std::cos(theta[i]);
+    retro[i] = std::isfinite(t) && t > 0 ? t : 0;
+  }
+  // f(w, w) cos theta = F D(w) / (4 sigma(w)), so D is an eigenvector of f cos theta int <w, m> D(m).
+  // Four steps are enough (Dupuy and Jakob 2018, section 4).
+  std::vector<double> d(n, 1.0), next(n);
+  for (int step = 0; step < 4; ++step) {
+    double area = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      double sigma = 0;
+      for (std::size_t k = 0; k < n; ++k)
+        sigma += mean_clamped_cosine(theta[i], theta[k]) * d[k] * measure[k];
+      next[i] = retro[i] * sigma;
+      area += 2 * double(pi) * std::cos(theta[i]) * next[i] * measure[i];
+    }
+    if (!(area > 0)) return std::vector<float>(n, 1 / pi);  // no retro-reflection: every normal alike
+    for (std::size_t i = 0; i < n; ++i) d[i] = next[i] / area;
+  }
+  return {d.begin(), d.end()};
+}
+
+std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std::vector<float>& theta_o,
+                                      const Host& host) {
+  const std::vector<float> d = retro_normals(f, target, ndf_size);
+  std::vector<std::optional<WarpSlice>> made(theta_o.size());
+  const auto fit = [&](std::size_t i) {
+    const Direction wo = direction_from_angles(theta_o[i], 0.f);
+    std::vector<float> visible;
+    for (int y = 0; y < warp_height; ++y) {
+      for (int x = 0; x < warp_width; ++x) {
+        const Vec2<float> p{float(x) / float(warp_width - 1), float(y) / float(warp_height - 1)};
+        // The Jacobian of the reflection is 4 (wo . wm): what is left of it is <wo, m> dm, up to a factor.
+        const float at = p.x * float(ndf_size - 1);
+        const auto k = std::size_t(std::min(int(at), ndf_size - 2));
+        visible.push_back(chart_point(SquareChart::half_vector, wo, p).jacobian *
+                          lerp(at - float(k), d[k], d[k + 1]));
+      }
+    }
+    BilinearTable normals(visible, warp_width, warp_height);
+    const BilinearTable::Pair warp{normals, normals, 0.f};
+    std::vector<Vec2<float>> points;
+    for (int y = 0; y < target_size; ++y) {
+      for (int x = 0; x < target_size; ++x) {
+        // Just inside: at the very border the density of visible normals is zero.
+        const auto inside = [](int j) { return std::clamp(double(j) / (target_size - 1), 1e-4, 1 - 1e-4); };
+        points.push_back(warp.warp(inside(x), inside(y)));
+      }
+    }
+    std::vector<float> value(points.size());
+    chart_target(f, target, SquareChart::half_vector, theta_o[i], points, value);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const float density = warp.pdf(points[k]);
+      value[k] = density > 0 ? value[k] / density : 0.f;
+    }
+    BilinearTable table(value, target_size, target_size);
+    made[i].emplace(WarpSlice{std::move(normals), std::move(table)});
+  };
+  const auto all = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) fit(i);
+  };
+  f.traits().concurrent ? host.parallel_for(theta_o.size(), all) : all(0, theta_o.size());
+  std::vector<WarpSlice> slices;
+  for (auto& slice : made) slices.push_back(std::move(*slice));
+  return slices;
+}
+
+}  // namespace reflectree
