@@ -39,7 +39,9 @@ inline ChartPlace chart_place(SquareChart chart, Direction wo, Direction wi) {
   const float y = phi_of(w) * (0.5f / pi) + 0.5f;
   // 1 - z loses the digits near the pole
   if (chart == SquareChart::hemisphere) return {{(w.x * w.x + w.y * w.y) / (1 + w.z), y}, 2 * pi};
-  const float x = min(sqrt(theta_of(w) * (2 / pi)), 1.f), sin_h = sqrt(w.x * w.x + w.y * w.y);
+  // At the normal itself the Jacobian is zero: a density there is that of a point 2e-8 away.
+  const float x = min(max(sqrt(theta_of(w) * (2 / pi)), 1e-4f), 1.f);
+  const float sin_h = max(sqrt(w.x * w.x + w.y * w.y), 0.5e-8f * pi);
   return {{x, y}, max(8 * pi * pi * x * sin_h * dot(wo, w), 0.f)};
 }
 
