@@ -2,8 +2,8 @@
 #include "reflectree/peers/registry.hpp"
 
 #include "analytic_peers.hpp"
+#include "reflectree/peers/tabulated.hpp"
 #include "reflectree/sampler/sampler.hpp"
-#include "tabulated_peers.hpp"
 
 namespace reflectree {
 
@@ -44,6 +44,11 @@ Made monotone(const PeerSubject& subject, const Host& host) {
   return AnySampler<Spectrum>("one-shot-monotone", MonotoneSampler{{subject.f, data}}, bytes_of(*data));
 }
 
+template <MakeTabulated make>
+Made tabulated(const PeerSubject& subject, const Host& host) {
+  return make(subject, host, {});
+}
+
 constexpr const char* ours = "Reflectree";
 
 // name, summary, source, general, unbiased, make
@@ -68,15 +73,17 @@ constexpr SamplerInfo all[] = {
     {"resampling", "one of eight candidates of the proxy, kept in proportion to the target",
      "Talbot, Cline and Egbert 2005", true, true, peers::resampling},
     {"cdf-table", "bilinear tables over slices of theta_o, inverted by their CDFs", "textbook", true, true,
-     make_cdf_table},
+     tabulated<make_cdf_table>},
     {"alias-table", "the same density, cells by alias table", "Walker 1977, Vose 1991", true, true,
-     make_alias_table},
+     tabulated<make_alias_table>},
+    {"factored", "the function in a few terms, each a product of functions of one angle",
+     "Lawrence, Rusinkiewicz, Ramamoorthi 2004", true, true, tabulated<make_factored>},
     {"adaptive-cdf", "cascaded CDFs reduced to polylines", "Lawrence, Rusinkiewicz, Ramamoorthi 2005", true,
-     true, make_adaptive_cdf},
+     true, tabulated<make_adaptive_cdf>},
     {"wavelet", "thresholded Haar wavelets, warped down their quadtree",
-     "Claustres et al. 2003, Clarberg et al. 2005", true, false, make_wavelet},
+     "Claustres et al. 2003, Clarberg et al. 2005", true, false, tabulated<make_wavelet>},
     {"warp-chain", "visible normals, then a table of the target in warped coordinates, fitted from any BRDF",
-     "Dupuy and Jakob 2018", true, false, make_warp_chain},
+     "Dupuy and Jakob 2018", true, false, tabulated<make_warp_chain>},
 };
 
 }  // namespace

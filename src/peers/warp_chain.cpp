@@ -10,7 +10,7 @@
 namespace reflectree {
 namespace {
 
-constexpr int ndf_size = 256, warp_width = 128, warp_height = 64, target_size = 32;
+constexpr int ndf_size = 256;
 
 // int_0^2pi max(0, wo . wm) dphi for elevations o and m.
 double mean_clamped_cosine(double o, double m) {
@@ -58,7 +58,9 @@ std::vector<float> retro_normals(const AnyBrdf& f, Target target, int count) {
 }
 
 std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std::vector<float>& theta_o,
-                                      const Host& host) {
+                                      const WarpOptions& options, const Host& host) {
+  const int warp_width = options.normals_width, warp_height = options.normals_height,
+            target_size = options.target_nodes;
   const std::vector<float> d = retro_normals(f, target, ndf_size);
   std::vector<std::optional<WarpSlice>> made(theta_o.size());
   const auto fit = [&](std::size_t i) {
@@ -80,7 +82,9 @@ std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std
     for (int y = 0; y < target_size; ++y) {
       for (int x = 0; x < target_size; ++x) {
         // Just inside: at the very border the density of visible normals is zero.
-        const auto inside = [](int j) { return std::clamp(double(j) / (target_size - 1), 1e-4, 1 - 1e-4); };
+        const auto inside = [target_size](int j) {
+          return std::clamp(double(j) / (target_size - 1), 1e-4, 1 - 1e-4);
+        };
         points.push_back(warp.warp(inside(x), inside(y)));
       }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Most peers are a density over directions: a way to draw one and its value, with the function only in the
-// weight. A density is plain immutable data with three functions; WeightedSampler adds the weight, once for all.
+// weight. A density is plain immutable data with three functions; WeightedSampler adds the weight, once for
+// all.
 #pragma once
 
 #include <optional>
@@ -16,8 +17,8 @@ struct DrawnFromDensity {
   float pdf = 0;  // per solid angle, sr^-1
 };
 
-// sample: nullopt where the method loses the sample (below the horizon); pdf: what sample returns, 0 outside of
-// the support; bytes: everything held in memory.
+// sample: nullopt where the method loses the sample (below the horizon); pdf: what sample returns, 0 outside
+// of the support; bytes: everything held in memory.
 template <class D>
 concept DirectionDensity = requires(const D& d, Direction w, UniformBits& u) {
   { d.sample(w, u) } -> std::same_as<std::optional<DrawnFromDensity>>;

@@ -13,6 +13,14 @@
 
 namespace reflectree {
 
+// The sizes of the published isotropic files are 8 elevations, 32 x 32 and, of the visible normals, 128 x
+// 128.
+struct WarpOptions {
+  int slices = 16;
+  int normals_width = 128, normals_height = 64;  // nodes of theta_h, phi_h
+  int target_nodes = 32;                         // a side
+};
+
 // D over x = sqrt(2 theta_h / pi), `count` equal steps from 0 to 1; the projected area of the normal is 1.
 std::vector<float> retro_normals(const AnyBrdf& f, Target target, int count);
 
@@ -37,6 +45,6 @@ struct WarpSlice {
 };
 
 std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std::vector<float>& theta_o,
-                                      const Host& host = {});
+                                      const WarpOptions& options = {}, const Host& host = {});
 
 }  // namespace reflectree

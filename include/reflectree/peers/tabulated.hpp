@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tabulated competitors and what can be tuned about them. All are for isotropic functions.
+#pragma once
+
+#include "reflectree/peers/curve_cdf.hpp"
+#include "reflectree/peers/factored.hpp"
+#include "reflectree/peers/registry.hpp"
+#include "reflectree/peers/warp_chain.hpp"
+
+namespace reflectree {
+
+// The defaults are those of the registry, chosen by bench/study/peers_tuning.
+struct TabulatedTuning {
+  int slices = 32;      // elevations of wo
+  int nodes = 64;       // a side, of cdf-table and alias-table
+  int cells = 128;      // a side, of adaptive-cdf and wavelet
+  float floor = 1e-3f;  // of the mean of a slice: no support is lost between the points of a table
+  CurveOptions curve{};
+  double dropped_energy = 1e-3;  // of the wavelet transform
+  FactoredOptions factored{};
+  WarpOptions warp{};
+};
+
+using MadePeer = std::optional<AnySampler<Spectrum>>;  // nullopt: the function is not isotropic
+using MakeTabulated = MadePeer(const PeerSubject&, const Host&, const TabulatedTuning&);
+
+MakeTabulated make_cdf_table, make_alias_table, make_factored, make_adaptive_cdf, make_wavelet,
+    make_warp_chain;
+
+}  // namespace reflectree
