@@ -72,7 +72,7 @@ MadePeer node_peer(const char* name, const PeerSubject& subject, const Host& hos
                    const TabulatedTuning& tuning) {
   const int n = tuning.nodes;
   return sliced_peer<Slice>(name, subject, host, tuning.slices, [&](SquareChart chart, float theta_o) {
-    return Slice(chart_nodes(subject.f, subject.target, chart, theta_o, n, n, tuning.floor), n, n);
+    return Slice(chart_nodes(subject.f, subject.target, chart, theta_o, n, n, tuning.node_floor), n, n);
   });
 }
 
@@ -88,7 +88,7 @@ MadePeer make_adaptive_cdf(const PeerSubject& subject, const Host& host, const T
   const int n = tuning.cells;
   return sliced_peer<CurveCdf>(
       "adaptive-cdf", subject, host, tuning.slices, [&](SquareChart chart, float theta_o) {
-        return CurveCdf(chart_cells(subject.f, subject.target, chart, theta_o, n, n, tuning.floor), n, n,
+        return CurveCdf(chart_cells(subject.f, subject.target, chart, theta_o, n, n, tuning.cell_floor), n, n,
                         tuning.curve);
       });
 }
@@ -96,7 +96,7 @@ MadePeer make_wavelet(const PeerSubject& subject, const Host& host, const Tabula
   const int n = tuning.cells;
   return sliced_peer<HaarWarp>(
       "wavelet", subject, host, tuning.slices, [&](SquareChart chart, float theta_o) {
-        return HaarWarp(chart_cells(subject.f, subject.target, chart, theta_o, n, n, tuning.floor), n,
+        return HaarWarp(chart_cells(subject.f, subject.target, chart, theta_o, n, n, tuning.cell_floor), n,
                         tuning.dropped_energy);
       });
 }

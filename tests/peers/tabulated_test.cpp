@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 
+#include "reflectree/io/material_file.hpp"
 #include "reflectree/peers/registry.hpp"
 #include "reflectree/verify/chi_square.hpp"
 #include "reflectree/verify/consistency.hpp"
@@ -13,49 +15,153 @@
 namespace reflectree {
 namespace {
 
+std::string measured(const char* name) {
+  const char* folder = std::getenv("REFLECTREE_DATA");
+  return folder ? std::string(folder) + "/rgl/" + name + "_rgb.bsdf" : "";
+}
+PeerSubject analytic(const char* text) {
+  const Material material = parse_material(text);
+  return {make_brdf(material), material, {}};
+}
+
 class Tabulated : public testing::TestWithParam<const char*> {};
+
+// Of one wo in the y-z plane, about which everything is symmetric: half of all directions have x > 0.
+Direction known(double deg) { return direction_from_angles(float(deg * double(pi) / 180), 0.5f * pi); }
+
+// These methods lose samples; densities that jump are integrated less sharply.
+ConsistencyOptions loose() {
+  ConsistencyOptions options;
+  options.max_none = 1, options.integral_tolerance = 5e-3;
+  return options;
+}
+
+void judge(const SamplerInfo& info, const AnySampler<Spectrum>& sampler, const PeerSubject& subject,
+           Direction wo, const std::string& where) {
+  const ErasedSampler erased = erase(sampler);
+  const TargetFunction f = target_function(subject.f);
+  const Bins bins = equal_mass_bins(f, wo, {.count = 36});
+  const ChiSquareOptions options{.samples = 100'000, .tests = 200};
+  const Tally tally = tally_of(erased, bins, options);
+  std::printf("%s: relVar %.4f, lost %.4f, %zu KiB\n", where.c_str(), relative_variance(tally),
+              double(tally.none) / double(tally.samples), sampler.bytes() / 1024);
+
+  // The directions are as the pdf says. Twin: one side gets 5 % more, the other 5 % less.
+  const auto density = density_masses(erased, bins, 5e-3);
+  const auto counts = check_counts(tally, density, options);
+  EXPECT_TRUE(counts.passed) << where << " " << to_line(counts);
+  const Tally twin = tally_of(bent(erased, 0, 0.05), bins, options);
+  EXPECT_FALSE(check_counts(twin, density, options).passed) << where;
+
+  // The weights are as the function says.
+  const auto weights = check_weights(tally, bins, options), mean = check_mean_weight(tally, bins, options);
+  if (info.unbiased) {
+    EXPECT_TRUE(weights.passed) << where << " " << to_line(weights);
+    EXPECT_TRUE(mean.passed) << where << " " << to_line(mean);
+  } else {
+    std::printf("  %s\n  %s\n", to_line(weights).c_str(), to_line(mean).c_str());
+  }
+  EXPECT_FALSE(check_weights(twin, bins, options).passed) << where;
+
+  for (const CheckResult& result : check_consistency(erased, f, wo, loose())) {
+    if (!info.unbiased && result.name == "support") continue;
+    EXPECT_TRUE(result.passed) << where << " " << to_line(result);
+  }
+}
+
+TEST_P(Tabulated, WrongPdfIsRejected) {
+  const PeerSubject subject = analytic("ggx:alpha=0.3");
+  const auto sampler = find_sampler(GetParam())->make(subject, {});
+  ASSERT_TRUE(sampler.has_value());
+  const ErasedSampler twin = scaled_pdf(erase(*sampler), 1.05f);
+  EXPECT_FALSE(all_passed(check_consistency(twin, target_function(subject.f), known(35), loose())));
+}
 
 TEST_P(Tabulated, IsWhatItClaims) {
   const SamplerInfo& info = *find_sampler(GetParam());
-  for (const char* text : {"lambert", "ggx:alpha=0.3", "ggx:alpha=0.1"}) {
-    const Material material = parse_material(text);
-    const PeerSubject subject{make_brdf(material), material, {}};
+  for (const char* text : {"lambert", "ggx:alpha=0.3", "ggx:alpha=0.1", "plastic:alpha=0.1"}) {
+    const PeerSubject subject = analytic(text);
     const auto sampler = info.make(subject, {});
     ASSERT_TRUE(sampler.has_value());
-    const ErasedSampler erased = erase(*sampler);
-    const TargetFunction f = target_function(subject.f);
-    for (const float theta_o : {0.6f, 1.3f}) {
-      const Direction wo = direction_from_angles(theta_o, 0.4f);
-      const Bins bins = equal_mass_bins(f, wo, {.count = 100});
-      const ChiSquareOptions options{.samples = 200'000, .tests = 60};
-      const Tally tally = tally_of(erased, bins, options);
-      std::printf("%s %s %.1f: relVar %.4f, lost %.4f, %zu KiB\n", GetParam(), text, double(theta_o),
-                  relative_variance(tally), double(tally.none) / double(tally.samples),
-                  sampler->bytes() / 1024);
-      const auto weights = check_weights(tally, bins, options),
-                 mean = check_mean_weight(tally, bins, options);
-      if (info.unbiased) {
-        EXPECT_TRUE(weights.passed) << text << " " << to_line(weights);
-        EXPECT_TRUE(mean.passed) << text << " " << to_line(mean);
-      } else {
-        std::printf("  %s\n  %s\n", to_line(weights).c_str(), to_line(mean).c_str());
-      }
-      EXPECT_FALSE(check_weights(tally_of(bent(erased, 2, 0.05, wo), bins, options), bins, options).passed)
-          << text;
-      ConsistencyOptions loose;
-      loose.max_none = 1, loose.integral_tolerance = 5e-3;
-      for (const CheckResult& result : check_consistency(erased, f, wo, loose)) {
-        if (!info.unbiased && result.name == "support") continue;
-        EXPECT_TRUE(result.passed) << text << " " << theta_o << " " << to_line(result);
-      }
-      EXPECT_FALSE(all_passed(check_consistency(scaled_pdf(erased, 1.05f), f, wo, loose)));
+    for (const double deg : {35, 75}) {
+      judge(info, *sampler, subject, known(deg),
+            std::string(GetParam()) + " " + text + " at " + std::to_string(int(deg)));
     }
   }
 }
 
+TEST_P(Tabulated, IsWhatItClaimsOnMeasuredMaterials) {
+  if (measured("").empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
+  const SamplerInfo& info = *find_sampler(GetParam());
+  for (const char* name : {"cardboard", "satin_purple", "chm_mint"}) {
+    const PeerSubject subject{load_brdf(measured(name)), {}, {}};
+    const auto sampler = info.make(subject, {});
+    ASSERT_TRUE(sampler.has_value());
+    judge(info, *sampler, subject, known(45), std::string(GetParam()) + " " + name);
+  }
+}
+
+// The share of the albedo where the sampler's density is zero, by a density that has no such places.
+double lost_mass(const AnySampler<Spectrum>& sampler, const PeerSubject& subject, Direction wo) {
+  const auto full = find_sampler("cosine")->make(subject, {});
+  Pcg32 u(1);
+  double all = 0, lost = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const auto drawn = full->sample(wo, u);
+    if (!drawn) continue;
+    const double w = double(subject.target(drawn->weight));
+    all += w;
+    if (!(sampler.pdf(wo, drawn->wi) > 0)) lost += w;
+  }
+  return lost / all;
+}
+
+// A pure mirror lobe is the hardest: most of the hemisphere is dark, and nothing returns to wo from below.
+TEST_P(Tabulated, LosesSupportIfSaidToBeBiased) {
+  const SamplerInfo& info = *find_sampler(GetParam());
+  double worst = 0;
+  for (const char* text : {"phong:kd=0", "ggx:alpha=0.1"}) {
+    const PeerSubject subject = analytic(text);
+    const auto sampler = info.make(subject, {});
+    ASSERT_TRUE(sampler.has_value());
+    for (const double deg : {20, 45, 60, 80}) {
+      worst = std::max(worst, lost_mass(*sampler, subject, known(deg)));
+    }
+  }
+  std::printf("%s: lost mass %.2g\n", GetParam(), worst);
+  // What float holds of a lobe's tail, cos^50 of nearly a right angle, is not what a table can lose.
+  EXPECT_EQ(worst < 1e-9, info.unbiased);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Tabulated,
-                         testing::Values("cdf-table", "alias-table", "adaptive-cdf", "wavelet",
+                         testing::Values("cdf-table", "alias-table", "factored", "adaptive-cdf", "wavelet",
                                          "warp-chain"));
+
+// The method's own sampling tables give .03 to .31 standard deviation over mean on its files; fitted from the
+// function alone it stays within that, but for the file whose function changes most between 75 and 85
+// degrees: there even 48 elevations leave .5.
+TEST(WarpChain, IsAsGoodAsPublishedOnItsOwnFiles) {
+  if (measured("").empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
+  for (const char* name : {"cardboard", "satin_purple", "chm_mint"}) {
+    const PeerSubject subject{load_brdf(measured(name)), {}, {}};
+    const auto sampler = find_sampler("warp-chain")->make(subject, {});
+    ASSERT_TRUE(sampler.has_value());
+    for (const double deg : {0, 30, 60, 75, 85}) {
+      Pcg32 u(1);
+      double sum = 0, sum2 = 0;
+      constexpr int samples = 100'000;
+      for (int i = 0; i < samples; ++i) {
+        const auto drawn = sampler->sample(known(deg), u);
+        const double w = drawn ? double(subject.target(drawn->weight)) : 0;
+        sum += w, sum2 += w * w;
+      }
+      const double deviation = std::sqrt(samples * sum2 / (sum * sum) - 1);
+      std::printf("warp-chain %s %2.0f deg: %.3f\n", name, deg, deviation);
+      const bool hard = name == std::string("chm_mint") && deg > 70;
+      EXPECT_LT(deviation, hard ? 0.6 : 0.31) << name << " " << deg;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace reflectree

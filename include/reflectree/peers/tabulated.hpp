@@ -11,10 +11,11 @@ namespace reflectree {
 
 // The defaults are those of the registry, chosen by bench/study/peers_tuning.
 struct TabulatedTuning {
-  int slices = 32;      // elevations of wo
-  int nodes = 64;       // a side, of cdf-table and alias-table
-  int cells = 128;      // a side, of adaptive-cdf and wavelet
-  float floor = 1e-3f;  // of the mean of a slice: no support is lost between the points of a table
+  int slices = 32;  // elevations of wo
+  int nodes = 64;   // a side, of cdf-table and alias-table
+  int cells = 128;  // a side, of adaptive-cdf and wavelet
+  // Of the mean of a slice: no support is lost between the points of a table, and no weight is huge.
+  float node_floor = 1e-4f, cell_floor = 1e-3f;
   CurveOptions curve{};
   double dropped_energy = 1e-3;  // of the wavelet transform
   FactoredOptions factored{};

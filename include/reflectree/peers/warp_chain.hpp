@@ -2,8 +2,9 @@
 // The chain of warps of Dupuy and Jakob 2018, "An Adaptive Parameterization for Efficient Material
 // Acquisition and Rendering": uniform points become points of the table of the target, those become visible
 // normals, and a normal reflects wo. Fitted from any BRDF: the normals' distribution by power iteration on
-// its retro-reflection. As published it loses samples below the horizon, and mass where all nodes of a cell,
-// or the retro-reflection, are zero while the function is not.
+// its retro-reflection. As published it loses samples below the horizon, and all mass at normals without
+// retro-reflection: none of GGX's or of the RGL files' was found lost, but .3 of a pure Phong lobe's at
+// grazing wo, which does not return to wo from beyond 45 degrees.
 #pragma once
 
 #include "reflectree/brdf/any_brdf.hpp"
@@ -18,7 +19,7 @@ namespace reflectree {
 struct WarpOptions {
   int slices = 16;
   int normals_width = 128, normals_height = 64;  // nodes of theta_h, phi_h
-  int target_nodes = 32;                         // a side
+  int target_nodes = 64;                         // a side
 };
 
 // D over x = sqrt(2 theta_h / pi), `count` equal steps from 0 to 1; the projected area of the normal is 1.
