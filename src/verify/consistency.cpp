@@ -57,7 +57,7 @@ Counts draw_and_compare(const ErasedSampler& sampler, const TargetFunction& f, D
       ++counts.not_finite;
       continue;
     }
-    counts.invalid += !(d.wi.z > 0) || !(d.pdf > 0);
+    counts.invalid += !(d.wi.z > 0) || (sampler.pdf && !(d.pdf > 0));
     counts.dead += !(d.weight > 0);
     const auto around = neighbours(d.wi);
     std::array<double, around.size()> t;
@@ -141,12 +141,12 @@ std::vector<CheckResult> check_consistency(const ErasedSampler& sampler, const T
   const Counts c = draw_and_compare(sampler, f, bins.wo, options);
   std::vector<CheckResult> results;
   const int all = options.samples;
-  results.push_back(share("weight_agrees", c.weight_differs, c.drawn, options.max_exceptions,
-                          "samples: weight * pdf is not t cos_i"));
   results.push_back(share("alive", c.none + c.dead + (c.invalid > 0 ? all : 0), all, options.max_none,
                           "draws gave no sample, weight 0, or a direction without density"));
   results.push_back(share("finite", c.not_finite, all, 0, "draws are not finite"));
   if (sampler.pdf) {
+    results.push_back(share("weight_agrees", c.weight_differs, c.drawn, options.max_exceptions,
+                            "samples: weight * pdf is not t cos_i"));
     results.push_back(share("pdf_agrees", c.pdf_differs, c.drawn, options.max_exceptions,
                             "samples: pdf is not pdf(wo, wi)"));
     results.push_back(check_support(sampler, f, bins));
