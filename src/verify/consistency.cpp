@@ -69,7 +69,8 @@ Counts draw_and_compare(const ErasedSampler& sampler, const TargetFunction& f, D
         pdf.add(double(sampler.pdf(wo, {float(around[k].x), float(around[k].y), float(around[k].z)})));
       }
     }
-    counts.weight_differs += !f_cos.holds(double(d.weight) * double(d.pdf), options.tolerance);
+    const bool known = sampler.pdf || d.pdf > 0;
+    counts.weight_differs += known && !f_cos.holds(double(d.weight) * double(d.pdf), options.tolerance);
     if (sampler.pdf) counts.pdf_differs += !pdf.holds(double(d.pdf), options.tolerance);
   }
   return counts;
@@ -141,12 +142,12 @@ std::vector<CheckResult> check_consistency(const ErasedSampler& sampler, const T
   const Counts c = draw_and_compare(sampler, f, bins.wo, options);
   std::vector<CheckResult> results;
   const int all = options.samples;
+  results.push_back(share("weight_agrees", c.weight_differs, c.drawn, options.max_exceptions,
+                          "samples: weight * pdf is not t cos_i"));
   results.push_back(share("alive", c.none + c.dead + (c.invalid > 0 ? all : 0), all, options.max_none,
                           "draws gave no sample, weight 0, or a direction without density"));
   results.push_back(share("finite", c.not_finite, all, 0, "draws are not finite"));
   if (sampler.pdf) {
-    results.push_back(share("weight_agrees", c.weight_differs, c.drawn, options.max_exceptions,
-                            "samples: weight * pdf is not t cos_i"));
     results.push_back(share("pdf_agrees", c.pdf_differs, c.drawn, options.max_exceptions,
                             "samples: pdf is not pdf(wo, wi)"));
     results.push_back(check_support(sampler, f, bins));
