@@ -57,7 +57,7 @@ Counts draw_and_compare(const ErasedSampler& sampler, const TargetFunction& f, D
       ++counts.not_finite;
       continue;
     }
-    counts.invalid += !(d.wi.z > 0) || !(d.pdf > 0);
+    counts.invalid += !(d.wi.z > 0) || (sampler.pdf && !(d.pdf > 0));
     counts.dead += !(d.weight > 0);
     const auto around = neighbours(d.wi);
     std::array<double, around.size()> t;
@@ -69,7 +69,8 @@ Counts draw_and_compare(const ErasedSampler& sampler, const TargetFunction& f, D
         pdf.add(double(sampler.pdf(wo, {float(around[k].x), float(around[k].y), float(around[k].z)})));
       }
     }
-    counts.weight_differs += !f_cos.holds(double(d.weight) * double(d.pdf), options.tolerance);
+    const bool known = sampler.pdf || d.pdf > 0;
+    counts.weight_differs += known && !f_cos.holds(double(d.weight) * double(d.pdf), options.tolerance);
     if (sampler.pdf) counts.pdf_differs += !pdf.holds(double(d.pdf), options.tolerance);
   }
   return counts;

@@ -3,6 +3,8 @@
 // The variances lie where others measured them.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "reflectree/peers/fit_mixture.hpp"
 #include "reflectree/peers/registry.hpp"
 #include "reflectree/verify/chi_square.hpp"
@@ -25,6 +27,13 @@ Made make(const char* name, const char* text) {
   PeerSubject subject{make_brdf(material), material, {}};
   auto sampler = find_sampler(name)->make(subject, {});
   return {subject, std::move(*sampler)};
+}
+// Fitting takes most of the time: each is made once.
+const Made& made(const char* name, const char* text) {
+  static std::map<std::string, Made> all;
+  const std::string key = std::string(name) + " " + text;
+  const auto found = all.find(key);
+  return found != all.end() ? found->second : all.emplace(key, make(name, text)).first->second;
 }
 ErasedSampler erased(const AnySampler<Spectrum>& s) {
   ErasedSampler e = erase(s, {}, s.name());
@@ -55,21 +64,22 @@ constexpr Case cases[] = {
 };
 
 TEST_P(Mixtures, DirectionsFollowTheirOwnPdf) {
-  const auto [subject, sampler] = make(GetParam().sampler, GetParam().material);
+  const auto& [subject, sampler] = made(GetParam().sampler, GetParam().material);
   // Bins of equal mass of the sampler's own density, which no test of f could hide a fault behind.
   const ErasedSampler judged = erased(sampler);
-  const TargetFunction own{[&](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t) {
-    const Direction o{float(wo.x), float(wo.y), float(wo.z)};
-    for (std::size_t i = 0; i < wi.size(); ++i) {
-      const Direction w{float(wi[i].x), float(wi[i].y), float(wi[i].z)};
-      t[i] = wi[i].z > 0 ? double(sampler.pdf(o, w)) / wi[i].z : 0;
-    }
-  }};
+  const TargetFunction own{
+      [&sampler = sampler](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t) {
+        const Direction o{float(wo.x), float(wo.y), float(wo.z)};
+        for (std::size_t i = 0; i < wi.size(); ++i) {
+          const Direction w{float(wi[i].x), float(wi[i].y), float(wi[i].z)};
+          t[i] = wi[i].z > 0 ? double(sampler.pdf(o, w)) / wi[i].z : 0;
+        }
+      }};
   ChiSquareOptions options;
-  options.samples = 300'000;
+  options.samples = 100'000;
   options.tests = 2 * int(std::size(cases));
   for (const Direction wo : {at(30, 20), at(75, 200)}) {
-    const Bins bins = equal_mass_bins(own, wo, {200, 1e-3});
+    const Bins bins = equal_mass_bins(own, wo, {100, 1e-3});
     const Tally tally = tally_of(judged, bins, options);
     const CheckResult counts = check_counts(tally, bins.mass, options);
     EXPECT_TRUE(counts.passed) << to_line(counts);
@@ -77,7 +87,7 @@ TEST_P(Mixtures, DirectionsFollowTheirOwnPdf) {
     const double lost = double(tally.none) / double(tally.samples);
     EXPECT_NEAR(bins.total + lost, 1, 5 * std::sqrt((lost + 1e-6) / double(tally.samples)) + 1e-3);
 
-    const Tally spoiled = tally_of(bent(judged, 1, 0.04), bins, options);
+    const Tally spoiled = tally_of(bent(judged, 1, 0.06), bins, options);
     EXPECT_FALSE(check_counts(spoiled, bins.mass, options).passed);
     EXPECT_GT(std::abs(1.02 * bins.total + lost - 1), 5e-3);  // a pdf 2 % too large
   }
@@ -88,10 +98,10 @@ INSTANTIATE_TEST_SUITE_P(All, Mixtures, ::testing::ValuesIn(cases));
 class Unbiased : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Unbiased, WeightedCountsAreTheTarget) {
-  const auto [subject, sampler] = make(GetParam().sampler, GetParam().material);
+  const auto& [subject, sampler] = made(GetParam().sampler, GetParam().material);
   const TargetFunction f = target_function(subject.f);
   ChiSquareOptions options;
-  options.samples = 300'000;
+  options.samples = 100'000;
   options.tests = 2 * int(std::size(cases)) + 2;
   for (const Direction wo : {at(30, 20), at(75, 200)}) {
     const Bins bins = equal_mass_bins(f, wo, {100, 1e-3});
@@ -104,6 +114,8 @@ TEST_P(Unbiased, WeightedCountsAreTheTarget) {
 
     const Tally spoiled = tally_of(scaled_weight(erased(sampler), 1.1f), bins, options);
     EXPECT_FALSE(check_mean_weight(spoiled, bins, options, 1e-3).passed);
+    const Tally crooked = tally_of(bent(erased(sampler), 1, 0.25), bins, options);
+    EXPECT_FALSE(check_weights(crooked, bins, options).passed);
   }
 }
 
@@ -112,7 +124,28 @@ INSTANTIATE_TEST_SUITE_P(Resampling, Unbiased,
                          ::testing::Values(Case{"resampling", "plastic"},
                                            Case{"resampling", "cook_torrance"}));
 
-double variance_of(const AnySampler<Spectrum>& sampler, Direction wo, int samples = 400'000) {
+// Resampling has no pdf: what it draws is finite and alive.
+class Consistent : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Consistent, PdfWeightAndFunctionAgree) {
+  const auto& [subject, sampler] = made(GetParam().sampler, GetParam().material);
+  const TargetFunction f = target_function(subject.f);
+  ConsistencyOptions options;
+  options.samples = 2000;
+  options.max_none = 0.6;  // lobes lose samples below the horizon; their rate is judged by pdf_integral
+  const Direction wo = at(50, 70);
+  for (const CheckResult& r : check_consistency(erased(sampler), f, wo, options)) {
+    EXPECT_TRUE(r.passed) << to_line(r);
+  }
+  const ErasedSampler spoiled =
+      sampler.has_pdf() ? scaled_pdf(erased(sampler), 1.02f) : scaled_weight(erased(sampler), INFINITY);
+  EXPECT_FALSE(all_passed(check_consistency(spoiled, f, wo, options)));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Consistent, ::testing::ValuesIn(cases));
+INSTANTIATE_TEST_SUITE_P(Resampling, Consistent, ::testing::Values(Case{"resampling", "plastic"}));
+
+double variance_of(const AnySampler<Spectrum>& sampler, Direction wo, int samples = 200'000) {
   const Target target;
   Pcg32 u(3);
   double sum = 0, sum2 = 0;

@@ -90,6 +90,17 @@ TEST(Consistency, WithoutADensityTheRestIsChecked) {
   const auto results = check_consistency(s, target_function(smooth.f), direction_at(30));
   EXPECT_EQ(results.size(), 3u);
   EXPECT_TRUE(all_passed(results));
+  EXPECT_FALSE(
+      all_passed(check_consistency(scaled_weight(s, 1.001f), target_function(smooth.f), direction_at(30))));
+
+  ErasedSampler unknown = s;
+  unknown.sample = [s](Direction wo, Pcg32& u, DrawnDirection& out) {
+    const bool drawn = s.sample(wo, u, out);
+    out.pdf = 0;
+    return drawn;
+  };
+  EXPECT_TRUE(all_passed(check_consistency(unknown, target_function(smooth.f), direction_at(30))));
+  EXPECT_FALSE(all_passed(check_consistency(dying(unknown, 5), target_function(smooth.f), direction_at(30))));
 }
 
 }  // namespace

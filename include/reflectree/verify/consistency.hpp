@@ -28,7 +28,8 @@ struct ConsistencyOptions {
 //   alive            no "no sample", no weight 0, no direction below the horizon
 //   finite           every direction, pdf and weight finite
 //   pdf_integral     integral of pdf + share of "no sample" = 1
-// Those about pdf are left out for a sampler without one.
+// Those about pdf are left out for a sampler without one; if its samples' pdf is 0 as well, the density is
+// unknown, and there is nothing for a weight to agree with.
 std::vector<CheckResult> check_consistency(const ErasedSampler& sampler, const TargetFunction& f,
                                            Direction wo, const ConsistencyOptions& options = {},
                                            const Host& host = {});
