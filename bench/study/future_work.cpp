@@ -248,8 +248,11 @@ int main() {
         "material "
         "= 1; variance and bias: relative, of the weight, the worst elevation.\n\n");
     show_wavelets(lights);
+    std::fflush(stdout);
     show_maps(lights);
+    std::fflush(stdout);
     show_qmc();
+    std::fflush(stdout);
     show_steps(lights);
     return 0;
   } catch (const std::exception& e) {

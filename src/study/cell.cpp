@@ -151,7 +151,11 @@ Cell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Dir
     Draws common = reference->draws;
     const Weights known = weights_by_density(sampler, target, wo, common);
     const double most = known.target.square + 5 * (known.target_square_error + weights.target_square_error);
-    cell.by_density = weights.target.square <= most * 1.01;
+    const double spread = std::sqrt(max(0., known.target.square - sqr(known.target.mean)) / of_target.n);
+    // The table of exact mode's albedo is right to 1e-4.
+    const bool same_mean =
+        std::abs(of_target.mean - known.target.mean) <= 5 * spread + 1.5e-4 * known.target.mean;
+    cell.by_density = same_mean && weights.target.square <= most * 1.01;
     if (cell.by_density) weights = known, draws = std::move(common);
   }
   cell.target_variance = weights.target.relative();

@@ -110,6 +110,19 @@ TEST(Cell, ADensityThatIsNotDrawnFromDoesNotCount) {
   EXPECT_NEAR(lying.target_variance, 1. / 3, 0.02);
 }
 
+// A density a little too small everywhere makes the weight too large, as the paper's does: what it says of
+// the variance is not so, for the weight is constant.
+TEST(Cell, ADensityThatIsNotNormalisedDoesNotCount) {
+  const AnyBrdf f = brdf("lambert:rho=0.5");
+  StudyOptions o;
+  o.samples = 1U << 14U;
+  const ReferenceDraws reference = exact_draws(f, o);
+  const Cell c = measure_cell({"c", CosineToy{f, 1.01f, 1 / 1.01f}}, {}, wo, grey, 0, {}, o, 3, &reference);
+  EXPECT_FALSE(c.by_density);
+  EXPECT_LT(c.target_variance, 1e-9);
+  EXPECT_TRUE(measure_cell({"c", CosineToy{f}}, {}, wo, grey, 0, {}, o, 3, &reference).by_density);
+}
+
 // Every weight 2 % too large: N times its square enters the error, less the interval of 1e-7.
 TEST(Cell, BiasEntersTheError) {
   const AnyBrdf f = brdf("lambert:rho=0.5");

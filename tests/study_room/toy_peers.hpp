@@ -10,13 +10,14 @@ struct CosineToy {
   using Value = Spectrum;
   AnyBrdf f;
   float planted = 1;  // every weight times this
+  float claimed = 1;  // every density times this
   template <RandomBits U>
   std::optional<DirectionSample<Spectrum>> sample(Direction wo, U& u) const {
     const float r2 = to_unit_float(u()), phi = 2 * pi * to_unit_float(u()), r = sqrt(r2);
     const Direction wi{r * cos(phi), r * sin(phi), sqrt(1 - r2)};
     return DirectionSample<Spectrum>{wi, wi.z / pi, scaled(eval(f, wo, wi), planted * pi)};
   }
-  float pdf(Direction, Direction wi) const { return wi.z / pi; }
+  float pdf(Direction, Direction wi) const { return wi.z / pi * claimed; }
 };
 
 // Uniform in solid angle with its density, which a fault claims to be that of the cosine lobe.

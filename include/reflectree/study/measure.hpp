@@ -76,7 +76,8 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
 //   E_p[w^2] = E_q[v^2 q / p],
 // and its estimate never varies more: with r = q / p that is E_p[r^3] <= E_p[r^4], for moments grow beyond
 // the first, E_p[r] = 1 (Lyapunov). So wherever a method has a density it is judged by these draws, unless
-// its own samples vary more than the density admits: then they are not of that density, and they count.
+// its own samples vary more, or have another mean, than the density admits: then they are not of that
+// density, and they count.
 struct ReferenceDraws {
   std::vector<DirectionSample<Spectrum>> draws;  // a multiple of 16
   std::vector<double> products;                  // a light: the mean of v.v' C(angle(wi, wi'))
