@@ -41,6 +41,11 @@ color:var(--ink);font-family:"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial
 .rt .curve-2{stroke:var(--bars);stroke-width:2}
 .rt .curve-3{stroke:var(--ink);stroke-width:2;stroke-dasharray:5 4}
 .rt .curve-4{stroke:var(--soft);stroke-width:2;stroke-dasharray:1 4}
+.rt .ours{stroke:var(--curve);stroke-width:2.8}
+.rt .hue-0{stroke:#d55e00}.rt .hue-1{stroke:#009e73}.rt .hue-2{stroke:#cc79a7}.rt .hue-3{stroke:#a8801c}.rt .hue-4{stroke:#8067d8}.rt .hue-5{stroke:#7d8896}
+.rt .dash-0,.rt .dash-1,.rt .dash-2{stroke-width:1.7}
+.rt .dash-1{stroke-dasharray:7 4}.rt .dash-2{stroke-dasharray:1.5 4}
+.rt .ours.dash-0,.rt .ours.dash-1,.rt .ours.dash-2{stroke-width:2.8}
 .rt .bar{fill:var(--bars);fill-opacity:.5;stroke:none}
 .rt .bar-edge{fill:none;stroke:var(--rule);stroke-width:1}
 .rt .bar-line{stroke:var(--bars);stroke-width:1}

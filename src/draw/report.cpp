@@ -150,23 +150,29 @@ constexpr const char* how_to_read =
 
 }  // namespace
 
-std::string report_html(const std::vector<ReportMaterial>& materials, const ReportMeta& meta) {
+std::string page_html(const std::string& title, const std::string& lead, const std::string& body,
+                      const std::string& made) {
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  out += element("title", {}, escape(meta.title)) + "\n";
+  out += element("title", {}, escape(title)) + "\n";
   out += element("style", {}, report_style + figure_style() + "\n.rt{--paper:transparent}") +
          "\n</head>\n<body>\n";
-  out += "<header class=\"top\"><h1>" + escape(meta.title) + "</h1>\n<p class=\"lead\">" +
-         summary(materials) + "</p></header>\n<main>\n";
-  out += element("section", {{"class", "card"}, {"aria-label", "All materials"}}, table(materials));
-  out += how_to_read;
-  for (std::size_t i = 0; i < materials.size(); ++i) out += section(materials[i], i);
+  out += "<header class=\"top\"><h1>" + escape(title) + "</h1>\n<p class=\"lead\">" + lead +
+         "</p></header>\n<main>\n";
+  return out + body + "<footer>" + made + "</footer>\n</main>\n</body>\n</html>\n";
+}
+
+std::string report_html(const std::vector<ReportMaterial>& materials, const ReportMeta& meta) {
+  std::string body =
+      element("section", {{"class", "card"}, {"aria-label", "All materials"}}, table(materials));
+  body += how_to_read;
+  for (std::size_t i = 0; i < materials.size(); ++i) body += section(materials[i], i);
   std::string made = meta.version.empty() ? "" : "reflectree " + escape(meta.version);
   if (!meta.made.empty()) made += (made.empty() ? "" : " · ") + escape(meta.made);
   if (!meta.command.empty())
     made += (made.empty() ? "" : " · ") + std::string("made by ") + element("code", {}, escape(meta.command));
-  return out + "<footer>" + made + "</footer>\n</main>\n</body>\n</html>\n";
+  return page_html(meta.title, summary(materials), body, made);
 }
 
 }  // namespace reflectree::draw

@@ -40,6 +40,9 @@ class Interrupt(ProgramTest):
     def test_info(self):
         self.assert_stops("info", *LONG)
 
+    def test_compare(self):
+        self.assert_stops("compare", LONG[0], "lambert", "--csv", "cells.csv", "--html", "page.html")
+
     def test_many_samples(self):
         self.run_program("build", "lambert", "-o", "l.rfl")
         child = subprocess.Popen([PROGRAM, "sample", "l.rfl", "-n", "10000000", "-o", "many.csv"], cwd=self.folder,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Keeps the arrows between the rooms by reading every #include.
 
-    math <- brdf <- sampler <- simd, io, verify, draw, peers, render, apps, bindings
+    math <- brdf <- sampler <- simd, io, verify, draw, peers, render, study, apps, bindings
 
 A room may include itself and the rooms below it. The core (math, brdf, sampler) sees the standard
 library alone; Embree is seen by render/embree_scene alone.
@@ -23,8 +23,9 @@ MAY_SEE = {
     "io": CORE,
     "verify": CORE,
     "peers": CORE,
-    "render": CORE,
+    "render": (*CORE, "io", "peers"),  # reads meshes and pictures; chooses samplers by name
     "draw": (*CORE, "verify"),
+    "study": (*CORE, "verify", "peers", "draw"),
 }
 STANDARD = frozenset(
     """algorithm array atomic bit bitset cassert cctype cerrno cfloat charconv chrono cinttypes climits

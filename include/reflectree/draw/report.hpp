@@ -50,6 +50,10 @@ struct ReportMeta {
   std::string made;  // date and machine, as the caller likes it; may be empty
 };
 
+// The frame of every page; the title plain text, the rest markup.
+std::string page_html(const std::string& title, const std::string& lead, const std::string& body,
+                      const std::string& made);
+
 std::string report_html(const std::vector<ReportMaterial>& materials, const ReportMeta& meta);
 
 }  // namespace reflectree::draw

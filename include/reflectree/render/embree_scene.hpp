@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene's shapes in Embree 3, robust; spheres and disks are ours. Nothing else knows Embree.
+#pragma once
+
+#include <memory>
+
+#include "reflectree/render/scene.hpp"
+
+namespace reflectree::render {
+
+struct Hit {
+  enum class Kind : std::uint8_t { triangle, sphere, disk } kind;
+  std::uint32_t index;
+  float distance;
+  float u, v;  // a triangle's barycentric weights of its second and third corner
+};
+
+class EmbreeScene {
+ public:
+  // Holds a reference to `scene`. Throws Error where Embree fails.
+  explicit EmbreeScene(const Scene& scene);
+  std::optional<Hit> intersect(Point origin, Direction direction, float near) const;
+  bool occluded(Point origin, Direction direction, float near, float far) const;
+
+ private:
+  std::shared_ptr<void> device_, scene_;
+};
+
+// What lies at a hit.
+struct Interaction {
+  Point at;
+  Direction normal;   // of the surface itself, on the side of `shading`
+  Direction shading;  // decides what is front and back, as in Mitsuba
+  Uv uv;
+  std::uint32_t surface;
+};
+Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
+
+}  // namespace reflectree::render

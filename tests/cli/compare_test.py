@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""compare: the same figures whatever the threads or the interruptions; files; every way to go wrong."""
+import csv
+import unittest
+
+from program import ProgramTest
+
+TWO = ["compare", "lambert", "ggx:alpha=0.4", "--quick", "--samplers", "exact,one-shot", "--theta-o-deg", "20"]
+TIMES = {"sample_ns", "pdf_ns", "floor_ns", "build_seconds"}
+
+
+def without_times(value):
+    if isinstance(value, dict):
+        return {k: without_times(v) for k, v in value.items() if k not in TIMES}
+    return [without_times(v) for v in value] if isinstance(value, list) else value
+
+
+class Compare(ProgramTest):
+    def assert_error(self, expected, *args):
+        out, words = self.run_program(*args, code=2)
+        self.assertEqual(out, "")
+        self.assertEqual(words.count("\n"), 1, words)
+        self.assertTrue(words.startswith("error: ") and "; " in words, words)
+        self.assertIn(expected, words)
+
+    def test_threads_do_not_matter_but_the_seed_does(self):
+        a, b, c = (self.json_of(*TWO, *more) for more in (["--threads", 1], ["--threads", 2], ["--seed", 2]))
+        self.assertEqual(without_times(a["materials"]), without_times(b["materials"]))
+        self.assertNotEqual(without_times(a["materials"]), without_times(c["materials"]))
+        self.assertEqual(a["options"]["seed"], 1)
+        for key in ("machine", "commit", "version"):
+            self.assertTrue(a[key], key)
+
+    def test_resumed_is_uninterrupted(self):
+        whole = self.json_of(*TWO, "--resume", "kept")
+        kept = sorted((self.folder / "kept").iterdir())
+        self.assertEqual(len(kept), 2)
+        again = self.json_of(*TWO, "--resume", "kept")
+        self.assertEqual(whole["materials"], again["materials"])  # the timings, too: nothing was measured
+        kept[0].unlink()
+        partly = self.json_of(*TWO, "--resume", "kept")
+        self.assertEqual(without_times(whole["materials"]), without_times(partly["materials"]))
+        self.assertNotEqual(whole["materials"], partly["materials"])
+
+    def test_kept_results_of_other_options_are_refused(self):
+        self.run_program(*TWO, "--resume", "kept")
+        self.assert_error("other options", *TWO, "--resume", "kept", "--seed", "2")
+        path = next((self.folder / "kept").iterdir())
+        path.write_text("{")
+        self.assert_error("no result of compare", *TWO, "--resume", "kept")
+
+    def test_files(self):
+        self.run_program(*TWO, "--csv", "c.csv", "--html", "c.html")
+        with open(self.folder / "c.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2 * 2)
+        exact = next(r for r in rows if r["material"] == "lambert" and r["sampler"] == "exact")
+        self.assertLess(float(exact["target_variance"]), 1e-9)
+        page = (self.folder / "c.html").read_text(encoding="utf-8")
+        self.assertNotIn("<script", page)
+        self.assertNotIn("http", page)
+        self.assertIn("ggx:alpha=0.4", page)
+
+    def test_a_measured_light(self):
+        # 8 x 4 pixels of (1, .5, .25) and exponent 129: radiances 1, .5, .25, flat records.
+        self.write("grey.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + bytes([128, 64, 32, 129]) * 32)
+        found = self.json_of(*TWO, "--envmap", "grey.hdr")
+        name, mean, mean_square = found["options"]["lights"][-1]
+        luminance = 0.2126 + 0.7152 * 0.5 + 0.0722 * 0.25
+        self.assertEqual(name, "grey")
+        self.assertAlmostEqual(mean, luminance, 4)
+        self.assertAlmostEqual(mean_square, luminance**2, 4)
+        # Under a light that is the same everywhere only the weight varies, and in exact mode it does not.
+        for sampler in found["materials"][0]["samplers"]:
+            if sampler["sampler"] == "exact":
+                self.assertLess(sampler["cells"][0]["error"][-1], 1e-4)
+        lights = len(found["options"]["lights"])
+        self.assertEqual(len(found["materials"][0]["samplers"][0]["cells"][0]["error"]), lights)
+
+    def test_errors(self):
+        self.assert_error("no sampler 'exat'", "compare", "lambert", "--samplers", "exat")
+        self.assert_error("no list of elevations", "compare", "lambert", "--theta-o-deg", "95")
+        self.assert_error("did you mean", "compare", "lamber")
+        self.write("file", b"x")
+        self.assert_error("file", "compare", "lambert", "--envmap", "file")
+        self.assert_error("no folder", "compare", "lambert", "--resume", "file")
+
+
+if __name__ == "__main__":
+    unittest.main()
