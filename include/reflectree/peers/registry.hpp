@@ -3,6 +3,7 @@
 // one line in registry.cpp.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenEXR through memory: what is read is one span of bytes, what is written appears by a rename.
+#include <ImfChannelList.h>
+#include <ImfCompression.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+
+#include <cstring>
+
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/io/image.hpp"
+
+namespace reflectree {
+
+namespace {
+
+class MemoryIn : public Imf::IStream {
+ public:
+  explicit MemoryIn(ByteView bytes) : IStream("memory"), bytes_(bytes) {}
+  bool read(char out[], int n) override {
+    if (n < 0 || std::uint64_t(n) > bytes_.size() - at_) throw std::runtime_error("the file ends early");
+    std::memcpy(out, bytes_.data() + at_, std::size_t(n));
+    at_ += std::size_t(n);
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t to) override {
+    if (to > bytes_.size()) throw std::runtime_error("the file ends early");
+    at_ = std::size_t(to);
+  }
+
+ private:
+  ByteView bytes_;
+  std::size_t at_ = 0;
+};
+
+class MemoryOut : public Imf::OStream {
+ public:
+  MemoryOut() : OStream("memory") {}
+  void write(const char data[], int n) override {
+    if (bytes.size() < at_ + std::size_t(n)) bytes.resize(at_ + std::size_t(n));
+    std::memcpy(bytes.data() + at_, data, std::size_t(n));
+    at_ += std::size_t(n);
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t to) override { at_ = std::size_t(to); }
+  Bytes bytes;
+
+ private:
+  std::size_t at_ = 0;
+};
+
+Imf::FrameBuffer frame_of(Image& image, int x0, int y0) {
+  Imf::FrameBuffer frame;
+  const std::size_t pixel = sizeof(float) * image.channels.size(), row = pixel * std::size_t(image.width);
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    // OpenEXR wants the address of pixel (0, 0), which the data window need not hold.
+    char* base = reinterpret_cast<char*>(image.values.data() + c) - std::ptrdiff_t(pixel) * x0 -
+                 std::ptrdiff_t(row) * y0;
+    frame.insert(image.channels[c], Imf::Slice(Imf::FLOAT, base, pixel, row));
+  }
+  return frame;
+}
+
+}  // namespace
+
+Image read_exr(ByteView bytes, const std::string& where) {
+  try {
+    MemoryIn in(bytes);
+    Imf::InputFile file(in);
+    const Imath::Box2i box = file.header().dataWindow();
+    std::vector<std::string> names;
+    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c) {
+      if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
+        throw std::runtime_error("channels of several resolutions");
+      }
+      names.emplace_back(c.name());
+    }
+    const std::int64_t width = std::int64_t(box.max.x) - box.min.x + 1,
+                       height = std::int64_t(box.max.y) - box.min.y + 1;
+    if (width > (1 << 20) || height > (1 << 20)) throw std::runtime_error("too large");
+    Image image = make_image(int(width), int(height), std::move(names));
+    for (auto a = file.header().begin(); a != file.header().end(); ++a) {
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute())) {
+        image.metadata[a.name()] = text->value();
+      }
+    }
+    file.setFrameBuffer(frame_of(image, box.min.x, box.min.y));
+    file.readPixels(box.min.y, box.max.y);
+    return image;
+  } catch (const std::exception& error) {
+    throw Error(std::string("OpenEXR cannot read it (") + error.what() + ")", where, "fetch the file again");
+  }
+}
+
+void write_exr(const std::string& path, const Image& image) {
+  Image copy = image;  // OpenEXR asks for pixels that can be written
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const std::string& name : image.channels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  for (const auto& [key, value] : image.metadata) header.insert(key, Imf::StringAttribute(value));
+  MemoryOut out;
+  try {
+    Imf::OutputFile file(out, header);
+    file.setFrameBuffer(frame_of(copy, 0, 0));
+    file.writePixels(image.height);
+  } catch (const std::exception& error) {
+    throw Error(std::string("OpenEXR cannot write it (") + error.what() + ")", path, "check the picture");
+  }
+  write_file_atomically(path, ByteView(out.bytes));
+}
+
+}  // namespace reflectree

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures go out and come back; damaged ones end in an Error, never in a crash.
+#include "reflectree/io/image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <cmath>
+
+#include <filesystem>
+
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/math/random.hpp"
+
+namespace reflectree {
+namespace {
+
+std::string temporary(const char* name) {
+  return (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)).string();
+}
+
+Image noise(int width, int height, std::vector<std::string> channels) {
+  Image image = make_image(width, height, std::move(channels));
+  Pcg32 u(7);
+  for (float& v : image.values) v = std::exp2(20 * to_unit_float(u()) - 10);
+  return image;
+}
+
+TEST(Image, ExrReturnsEveryBitLayerAndWord) {
+  Image image = noise(17, 5, {"B", "G", "R", "stderr.B", "stderr.R"});
+  image.metadata["seed"] = "11";
+  const std::string path = temporary("a.exr");
+  write_exr(path, image);
+  const Image back = read_image(path);
+  EXPECT_EQ(back.channels, image.channels);
+  EXPECT_EQ(back.values, image.values);
+  EXPECT_EQ(back.metadata.at("seed"), "11");
+  Bytes bytes = read_file(path, 1 << 20);
+  for (std::size_t n = 0; n < bytes.size(); n += 7) {
+    EXPECT_THROW(read_exr(ByteView(bytes).first(n), path), Error) << n;
+  }
+  std::filesystem::remove(path);
+}
+
+TEST(Image, PngReturnsColoursAndRefusesDamage) {
+  Image image = make_image(3, 1, {"R", "G", "B"});
+  image.values = {0, .5f, 1, 2, -1, .25f, NAN, 0, 0};
+  const std::string path = temporary("a.png");
+  write_png(path, image);
+  const Image back = read_image(path);
+  const float expected[] = {0, .5f, 1, 1, 0, .25f, 1, 0, 1};
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(from_srgb(back.values[i]), expected[i], .005) << i;
+  const Bytes bytes = read_file(path, 1 << 20);
+  EXPECT_THROW(read_png(ByteView(bytes).first(40), path), Error);
+  std::filesystem::remove(path);
+}
+
+Bytes hdr(const std::string& size, std::initializer_list<int> pixels) {
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n";
+  Bytes bytes(head.begin(), head.end());
+  for (const int v : pixels) bytes.push_back(std::uint8_t(v));
+  return bytes;
+}
+
+TEST(Image, HdrFlatAndCoded) {
+  const Image flat = read_hdr(hdr("-Y 1 +X 2", {128, 64, 0, 129, 1, 2, 3, 0}), "flat");
+  EXPECT_EQ(flat.values, (std::vector<float>{1, .5f, 0, 0, 0, 0}));
+  const Image coded = read_hdr(hdr("-Y 1 +X 8", {2, 2, 0, 8, 136, 128, 136, 64, 136, 32, 136, 129}), "coded");
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(coded.values[3 * i + 1], .5f);
+}
+
+TEST(Image, HdrNeverTrustsALength) {
+  const Bytes good = hdr("-Y 1 +X 8", {2, 2, 0, 8, 136, 128, 136, 64, 136, 32, 136, 129});
+  for (std::size_t n = 0; n < good.size(); ++n) EXPECT_THROW(read_hdr(ByteView(good).first(n), "cut"), Error);
+  EXPECT_THROW(read_hdr(hdr("-Y 1 +X 8", {2, 2, 0, 8, 137, 128}), "run beyond the row"), Error);
+  EXPECT_THROW(read_hdr(hdr("-Y 1 +X 8", {2, 2, 0, 8, 0, 128}), "run of nothing"), Error);
+  EXPECT_THROW(read_hdr(hdr("-Y 99999 +X 99999", {2, 2}), "a size that lies"), Error);
+  EXPECT_THROW(read_hdr(hdr("-Y -1 +X 8", {2, 2}), "a negative size"), Error);
+}
+
+}  // namespace
+}  // namespace reflectree
