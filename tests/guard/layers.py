@@ -23,7 +23,7 @@ MAY_SEE = {
     "io": CORE,
     "verify": CORE,
     "peers": CORE,
-    "render": CORE,
+    "render": (*CORE, "io", "peers"),  # reads meshes and pictures; chooses samplers by name
     "draw": (*CORE, "verify"),
 }
 STANDARD = frozenset(

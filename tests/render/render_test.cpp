@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path tracer against closed forms and against itself; bad scenes end in a clear Error.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "reflectree/error.hpp"
+#include "reflectree/render/path_tracer.hpp"
+
+namespace reflectree::render {
+namespace {
+
+constexpr const char* sensor = R"(
+  <sensor type="perspective"><float name="fov" value="20"/>
+    <transform name="to_world"><lookat origin="0,0,4" target="0,0,0" up="0,1,0"/></transform>
+    <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+    <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="8"/>
+      <rfilter type="box"/></film></sensor>)";
+
+std::string scene_of(const std::string& rest, const std::string& depth = "-1") {
+  return "<scene version=\"3.0.0\"><default name=\"spp\" value=\"64\"/><integrator type=\"path\">"
+         "<integer name=\"max_depth\" value=\"" +
+         depth + "\"/></integrator>" + sensor + rest + "</scene>";
+}
+
+struct Mean {
+  double value = 0, error = 0;
+};
+Mean mean_of(const Image& image) {
+  Mean m;
+  const auto pixels = double(image.width * image.height);
+  for (std::size_t i = 0; i < image.values.size(); i += 6) {
+    m.value += double(image.values[i]) / pixels;
+    m.error += double(image.values[i + 3]) * double(image.values[i + 3]) / (pixels * pixels);
+  }
+  m.error = std::sqrt(m.error);
+  return m;
+}
+
+// A wall that fills the picture, under a sky of radiance 1, seen from the front.
+std::string furnace(const std::string& bsdf) {
+  return scene_of(R"(<emitter type="constant"><rgb name="radiance" value="1"/></emitter>
+    <shape type="rectangle">)" +
+                  bsdf + "</shape>");
+}
+
+TEST(Render, FurnaceShowsTheAlbedoOfALambertianWall) {
+  const Scene scene = parse_scene(
+      furnace(R"(<bsdf type="diffuse"><rgb name="reflectance" value="0.3"/></bsdf>)"), "furnace.xml");
+  const Mean m = mean_of(render(scene, {16, 1}));
+  EXPECT_NEAR(m.value, .3, 1e-5);
+  EXPECT_GT(std::abs(m.value - .3 * 1.001), 1e-5);  // the twin
+}
+
+// The albedo of a function from the midpoint rule over (cos theta, phi) alone, averaged over the pixels' wo.
+double albedo_seen(const Scene& scene, const AnyBrdf& f) {
+  double total = 0;
+  for (int y = 0; y < scene.height; ++y) {
+    for (int x = 0; x < scene.width; ++x) {
+      const float px = 1 - 2 * (float(x) + .5f) / float(scene.width),
+                  py = 1 - 2 * (float(y) + .5f) / float(scene.height);
+      const Direction wo = normalize(Direction{px * scene.camera.tan_x, py * scene.camera.tan_y, 1});
+      double sum = 0;
+      constexpr int n = 200;
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+          const double r2 = (i + .5) / n, phi = 2 * M_PI * (j + .5) / n;
+          const Direction wi{float(std::sqrt(r2) * std::cos(phi)), float(std::sqrt(r2) * std::sin(phi)),
+                             float(std::sqrt(1 - r2))};
+          sum += double(eval(f, wo, wi)[0]);
+        }
+      }
+      total += sum * M_PI / (n * n);
+    }
+  }
+  return total / (scene.width * scene.height);
+}
+
+TEST(Render, FurnaceShowsTheAlbedoOfAGlossyWallByEitherMode) {
+  for (const char* sampler : {"exact", "one-shot"}) {
+    SceneOptions options;
+    options.sampler = sampler;
+    const Scene scene = parse_scene(
+        furnace(R"(<bsdf type="reflectree"><string name="material" value="ggx:alpha=0.4,f0=0.8"/></bsdf>)"),
+        "furnace.xml", options);
+    const Mean m = mean_of(render(scene, {1024, 3}));
+    const double albedo = albedo_seen(scene, *scene.surfaces[0].f);
+    EXPECT_LT(std::abs(m.value / albedo - 1), 1e-3) << sampler << ": " << m.value << " and " << albedo;
+    EXPECT_GT(std::abs(m.value * 1.003 / albedo - 1), 1e-3) << "a planted bias of .3 % must be seen";
+  }
+}
+
+// Two parallel facing lights and walls: next-event estimation and MIS against chance hits alone.
+TEST(Render, LightsAreFoundBySamplingThemAndByChanceAlike) {
+  const std::string xml = scene_of(R"(
+    <shape type="rectangle"><bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf></shape>
+    <shape type="rectangle"><transform name="to_world"><rotate y="1" angle="110"/><translate x="-2" z="1"/></transform>
+      <bsdf type="diffuse"/><emitter type="area"><rgb name="radiance" value="3"/></emitter></shape>)",
+                                   "3");
+  const Scene scene = parse_scene(xml, "lights.xml");
+  Scene dim = scene;  // the same without next-event estimation: a sampler that has no density
+  struct Chance {
+    using Value = Spectrum;
+    std::optional<DirectionSample<Spectrum>> sample(Direction wo, UniformBits& u) const {
+      return draw(wo, u);
+    }
+    std::optional<DirectionSample<Spectrum>> sample(Direction wo, Pcg32& u) const { return draw(wo, u); }
+    template <class U>
+    static std::optional<DirectionSample<Spectrum>> draw(Direction wo, U& u) {
+      if (!(wo.z > 0)) return std::nullopt;
+      const float z = to_unit_float(u()), phi = 2 * pi * to_unit_float(u()), r = std::sqrt(1 - z * z);
+      Spectrum weight(3);
+      for (int k = 0; k < 3; ++k) weight[k] = z;  // uniform: f cos / pdf = .5 / pi cos 2 pi
+      return DirectionSample<Spectrum>{
+          {r * std::cos(phi), r * std::sin(phi), z}, 0, weight, sample_reflection};
+    }
+  };
+  for (Surface& s : dim.surfaces) s.sampler = AnySampler<Spectrum>("chance", Chance{});
+  const Mean a = mean_of(render(scene, {256, 1})), b = mean_of(render(dim, {2048, 2}));
+  const double z = (a.value - b.value) / std::hypot(a.error, b.error);
+  EXPECT_LT(std::abs(z), 4) << a.value << " and " << b.value;
+  EXPECT_GT(std::abs(a.value * 1.05 - b.value) / std::hypot(a.error, b.error), 4) << "a planted bias of 5 %";
+}
+
+TEST(Render, ThePictureIsTheSameForAnyNumberOfThreads) {
+  const Scene scene = parse_scene(furnace(R"(<bsdf type="diffuse"/>)"), "furnace.xml");
+  Host host;
+  host.parallel_for = [](std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) {
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < n; ++i) threads.emplace_back([&body, i] { body(i, i + 1); });
+    for (std::thread& t : threads) t.join();
+  };
+  EXPECT_EQ(render(scene, {8, 5}).values, render(scene, {8, 5}, host).values);
+  EXPECT_NE(render(scene, {8, 5}).values, render(scene, {8, 6}).values);
+}
+
+std::string error_of(const std::string& xml) {
+  try {
+    parse_scene(xml, "bad.xml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
+  const std::pair<std::string, const char*> cases[] = {
+      {"<scene>", "bad.xml:1:"},
+      {"<other/>", "no <scene>"},
+      {scene_of("<shape type=\"torus\"/>"), "'torus'"},
+      {scene_of("<shape type=\"rectangle\"><bsdf type=\"velvet\"/></shape>"), "'velvet'"},
+      {scene_of("<shape type=\"rectangle\"><float name=\"radius\" value=\"1\"/></shape>"), "'radius'"},
+      {scene_of("<shape type=\"rectangle\"><ref id=\"nobody\"/></shape>"), "'nobody'"},
+      {scene_of("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>"
+                "<shape type=\"rectangle\"><ref id=\"a\"/></shape>"),
+       "circle"},
+      {scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><translate "
+                "x=\"nan\"/></transform></shape>"),
+       "finite"},
+      {scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><rotate "
+                "angle=\"9\"/></transform></shape>"),
+       "finite"},
+      {scene_of("<shape type=\"obj\"><string name=\"filename\" value=\"nothing.obj\"/></shape>"),
+       "no such file"},
+      {"<scene><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"0\"/>"
+       "<rfilter type=\"box\"/></film></sensor></scene>",
+       "without pixels"},
+      {"<scene><sensor type=\"perspective\"><float name=\"fov\" value=\"$f\"/><film type=\"hdrfilm\">"
+       "<rfilter type=\"box\"/></film></sensor></scene>",
+       "-D f=VALUE"},
+  };
+  for (const auto& [xml, words] : cases) {
+    EXPECT_NE(error_of(xml).find(words), std::string::npos) << words << " in: " << error_of(xml);
+  }
+}
+
+TEST(Render, DegenerateTrianglesAreLeftOut) {
+  const Scene scene = parse_scene(
+      scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"0\"/></transform></shape>"),
+      "flat.xml");
+  EXPECT_TRUE(scene.triangles.empty());
+  EXPECT_EQ(mean_of(render(scene, {1, 1})).value, 0);
+}
+
+}  // namespace
+}  // namespace reflectree::render
