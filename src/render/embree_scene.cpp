@@ -36,6 +36,10 @@ EmbreeScene::EmbreeScene(const Scene& scene) {
   const RTCScene world = rtcNewScene(device);
   scene_ = {world, [](void* p) { rtcReleaseScene(static_cast<RTCScene>(p)); }};
   rtcSetSceneFlags(world, RTC_SCENE_FLAG_ROBUST);
+  if (scene.triangles.empty()) {
+    rtcCommitScene(world);
+    return;
+  }
   const RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const std::shared_ptr<void> keep(mesh, [](void* p) { rtcReleaseGeometry(static_cast<RTCGeometry>(p)); });
   auto* points =

@@ -310,6 +310,29 @@ class Reader {
     scene_.triangles.push_back({corner, std::uint32_t(scene_.surfaces.size() - 1), radiance});
   }
 
+  // Whether a flat triangle's vertex normals point against its own: they say which side is the front. Normals
+  // that are not the triangle's own are refused, not ignored.
+  bool turned(Node n, const tinyobj::attrib_t& a, const tinyobj::index_t* corner) const {
+    const auto at = [](const std::vector<float>& v, int i) {
+      const std::size_t k = 3 * std::size_t(i);
+      return i >= 0 && k + 2 < v.size() ? Point{v[k], v[k + 1], v[k + 2]} : Point{};
+    };
+    const Point p = at(a.vertices, corner[0].vertex_index);
+    const Point own =
+        cross(at(a.vertices, corner[1].vertex_index) - p, at(a.vertices, corner[2].vertex_index) - p);
+    if (!(length(own) > 0)) return false;
+    float least = 1, most = -1;
+    for (int k = 0; k < 3; ++k) {
+      const Point given = at(a.normals, corner[k].normal_index);
+      const float cosine = dot(given, own) / (length(given) * length(own));
+      least = std::min(least, cosine), most = std::max(most, cosine);
+    }
+    if (!(least > .999f || most < -.999f)) {
+      fail(n, "the mesh has shading normals, which are not interpolated yet", "set face_normals to true");
+    }
+    return most < 0;
+  }
+
   void read_obj(Node n, const Matrix& m, std::uint32_t base, Rgb radiance) {
     const std::string file = beside(text(named(n, "filename"), "value"));
     const Bytes bytes = read_file(file, std::uint64_t(1) << 32U);
@@ -319,17 +342,17 @@ class Reader {
     }
     const auto& a = reader.GetAttrib();
     const Node flat = named(n, "face_normals");
-    if (!a.normals.empty() && !(flat && text(flat, "value") == "true")) {
-      fail(n, "the mesh has shading normals, which are not interpolated yet", "set face_normals to true");
-    }
+    const bool smooth = !a.normals.empty() && !(flat && text(flat, "value") == "true");
     for (std::size_t i = 0; i + 2 < a.vertices.size(); i += 3) {
       scene_.points.push_back(apply(m, {a.vertices[i], a.vertices[i + 1], a.vertices[i + 2]}, 1));
     }
     for (const auto& shape : reader.GetShapes()) {
       const auto& v = shape.mesh.indices;
       for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
-        const auto at = [&](std::size_t k) { return std::uint32_t(v[i + k].vertex_index); };
-        add(n, base, {at(0), at(1), at(2)}, radiance);
+        std::array<std::uint32_t, 3> corner{};
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = std::uint32_t(v[i + k].vertex_index);
+        if (smooth && turned(n, a, &v[i])) std::swap(corner[1], corner[2]);
+        add(n, base, corner, radiance);
       }
     }
   }
