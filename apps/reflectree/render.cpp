@@ -4,7 +4,7 @@
 
 #include "commands.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/render/path_tracer.hpp"
+#include "reflectree/render/film.hpp"
 
 namespace reflectree::cli {
 
@@ -25,7 +25,7 @@ int run_render(const Context& context, Options& o) {
     o.reading.defines[define.substr(0, at)] = define.substr(at + 1);
   }
   const render::Scene scene = render::load_scene(o.scene, o.reading, context.host("building"));
-  const Image image = render::render(scene, {o.samples, context.seed}, context.host("rendering"));
+  const Image image = render::render(scene, {.samples = o.samples, .seed = context.seed}, context.host("rendering"));
   const std::string png = std::filesystem::path(o.output).replace_extension(".png").string();
   write_exr(o.output, image);
   write_png(png, image);

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sampled spectra to linear sRGB. The colour-matching functions are the fits of Wyman, Sloan & Shirley 2013,
-// "Simple Analytic Approximations to the CIE XYZ Color Matching Functions" (JCGT 2(2), eq. 4), good to about
-// 1 %.
+// Sampled spectra to linear sRGB, as Mitsuba's RGB variants do: by the CIE 1931 functions, a reflectance seen
+// under D65, an emission as it is; Y of a constant 1 is 1. Tables are interpolated linearly at every nm.
 #include "scene_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "cie_tables.hpp"
 
 namespace reflectree::render {
 
 namespace {
-
-double bump(double wavelength, double centre, double below, double above) {
-  const double t = (wavelength - centre) / (wavelength < centre ? below : above);
-  return std::exp(-.5 * t * t);
-}
 
 double at(const SampledSpectrum& s, double wavelength) {
   if (wavelength < s.front().first || wavelength > s.back().first) return 0;
@@ -26,23 +23,28 @@ double at(const SampledSpectrum& s, double wavelength) {
   return s.back().second;
 }
 
+CieRow row_at(int nm) {
+  const CieRow* a = cie_1931 + std::min<std::ptrdiff_t>((nm - 360) / 5, std::ssize(cie_1931) - 2);
+  const double t = (nm - a->nm) / 5.;
+  CieRow r{nm, {}, std::lerp(a[0].d65, a[1].d65, t)};
+  for (int k = 0; k < 3; ++k) r.xyz[k] = std::lerp(a[0].xyz[k], a[1].xyz[k], t);
+  return r;
+}
+
 }  // namespace
 
 Rgb to_linear_srgb(const SampledSpectrum& spectrum, bool reflectance) {
-  double xyz[3] = {}, white[3] = {};
+  double xyz[3] = {}, white = 0;
   for (int nm = 360; nm <= 830; ++nm) {
-    const double l = nm;
-    const double cmf[3] = {1.056 * bump(l, 599.8, 37.9, 31.0) + .362 * bump(l, 442.0, 16.0, 26.7) -
-                               .065 * bump(l, 501.1, 20.4, 26.2),
-                           .821 * bump(l, 568.8, 46.9, 40.5) + .286 * bump(l, 530.9, 16.3, 31.1),
-                           1.217 * bump(l, 437.0, 11.8, 36.0) + .681 * bump(l, 459.0, 26.0, 13.8)};
-    const double v = at(spectrum, l);
-    for (int k = 0; k < 3; ++k) xyz[k] += v * cmf[k], white[k] += cmf[k];
+    const CieRow row = row_at(nm);
+    const double light = reflectance ? row.d65 : 1, v = at(spectrum, nm);
+    for (int k = 0; k < 3; ++k) xyz[k] += v * light * row.xyz[k];
+    white += light * row.xyz[1];
   }
-  // A reflectance is seen by a white of its own: scaled so that 1 everywhere becomes (1, 1, 1).
-  constexpr double d65[3] = {.95047, 1, 1.08883};
-  for (int k = 0; k < 3; ++k) xyz[k] *= reflectance ? d65[k] / white[k] : 1 / white[1];
-  const auto row = [&](double x, double y, double z) { return float(x * xyz[0] + y * xyz[1] + z * xyz[2]); };
+  // IEC 61966-2-1.
+  const auto row = [&](double x, double y, double z) {
+    return float((x * xyz[0] + y * xyz[1] + z * xyz[2]) / white);
+  };
   const Rgb c{row(3.240479, -1.537150, -.498535), row(-.969256, 1.875991, .041556),
               row(.055648, -.204043, 1.057311)};
   const auto kept = [&](float v) { return std::max(0.f, reflectance ? std::min(v, 1.f) : v); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's triangles in Embree 3, robust. Nothing else knows Embree.
+// The scene's shapes in Embree 3, robust; spheres and disks are ours. Nothing else knows Embree.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,15 @@
 namespace reflectree::render {
 
 struct Hit {
-  std::uint32_t triangle;
+  enum class Kind : std::uint8_t { triangle, sphere, disk } kind;
+  std::uint32_t index;
   float distance;
+  float u, v;  // a triangle's barycentric weights of its second and third corner
 };
 
 class EmbreeScene {
  public:
-  // Holds a reference to the points of `scene`. Throws Error where Embree fails.
+  // Holds a reference to `scene`. Throws Error where Embree fails.
   explicit EmbreeScene(const Scene& scene);
   std::optional<Hit> intersect(Point origin, Direction direction, float near) const;
   bool occluded(Point origin, Direction direction, float near, float far) const;
@@ -23,5 +25,15 @@ class EmbreeScene {
  private:
   std::shared_ptr<void> device_, scene_;
 };
+
+// What lies at a hit.
+struct Interaction {
+  Point at;
+  Direction normal;   // of the surface itself, on the side of `shading`
+  Direction shading;  // decides what is front and back, as in Mitsuba
+  Uv uv;
+  std::uint32_t surface;
+};
+Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
 
 }  // namespace reflectree::render

@@ -1,21 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Path tracing with next-event estimation (Kajiya 1986), combined by the balance heuristic (Veach
-// 1997, 9.2.2).
+// Path tracing with next-event estimation (Kajiya 1986), combined by the balance or power heuristic (Veach
+// 1997, 9.2.2). Radiance along one ray; film.hpp makes pictures of it.
 #pragma once
 
-#include "reflectree/io/image.hpp"
-#include "reflectree/render/scene.hpp"
+#include "reflectree/render/lights.hpp"
 
 namespace reflectree::render {
 
-struct RenderOptions {
-  int samples = 0;  // a pixel; 0: the scene's
-  std::uint64_t seed = 1;
+enum class Technique {
+  balance,  // lights and the surface's own directions, weighed by the balance heuristic
+  power,    // by the power heuristic, exponent 2
+  light,    // lights alone; deltas still find them by chance
+  surface   // the surface's directions alone; point and directional lights stay dark
 };
 
-// Channels R, G, B and stderr.R, stderr.G, stderr.B, the standard error of each pixel's mean. A sample's
-// random numbers depend on seed, pixel and sample alone: the picture is the same for any number of threads.
-// Throws Cancelled.
-Image render(const Scene& scene, const RenderOptions& options = {}, const Host& host = {});
+class PathTracer {
+ public:
+  explicit PathTracer(const Scene& scene, Technique technique = Technique::balance);
+  Rgb radiance(Point origin, Direction direction, Pcg32& u) const;
+
+ private:
+  float weight(float own, float other) const;
+  float near(Point at) const;
+  Rgb direct(const Interaction& on, const Frame<float>& frame, Direction wo, const Scattering& surface,
+             Pcg32& u) const;
+
+  const Scene& scene_;
+  Technique technique_;
+  EmbreeScene embree_;
+  Lights lights_;
+  float extent_ = 0;
+};
 
 }  // namespace reflectree::render

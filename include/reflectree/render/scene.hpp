@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data: triangles in world space, what covers them, one camera. Read from the part of
+// A scene as plain data: shapes in world space, what covers them, lights, one camera. Read from the part of
 // Mitsuba 3's XML that docs/architecture.md names; whatever else a file asks for is an Error with its line.
 #pragma once
 
@@ -9,26 +9,50 @@
 #include <string>
 #include <vector>
 
-#include "reflectree/brdf/any_brdf.hpp"
-#include "reflectree/sampler/any_sampler.hpp"
+#include "reflectree/render/environment.hpp"
+#include "reflectree/render/scattering.hpp"
 #include "reflectree/sampler/host.hpp"
 
 namespace reflectree::render {
 
 using Point = Vec3<float>;
 
-// A Lambertian surface where there is no sampler.
 struct Surface {
-  Rgb albedo{.5f, .5f, .5f};
-  bool two_sided = false;
-  std::optional<AnyBrdf> f;
-  std::optional<AnySampler<Spectrum>> sampler;
+  ScatteringPtr scattering;
+  Rgb radiance;  // emitted to the side of the normal
 };
 
+// `normal`: for shading, interpolated; zero: the triangle's own, (p1 - p0) x (p2 - p0).
+struct Vertex {
+  Point at;
+  Direction normal;
+  Uv uv;
+};
 struct Triangle {
   std::array<std::uint32_t, 3> corner{};
   std::uint32_t surface = 0;
-  Rgb radiance;  // emitted to the side of the normal, (p1 - p0) x (p2 - p0)
+};
+// Intersected in double precision. `axes`: of its longitudes and latitudes.
+struct Sphere {
+  Vec3<double> centre;
+  double radius = 1;
+  bool inwards = false;  // its normals
+  Frame<float> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::uint32_t surface = 0;
+};
+// The image of the unit circle: centre + x s + y t; its normal is s x t.
+struct Disk {
+  Point centre, s, t;
+  std::uint32_t surface = 0;
+};
+
+struct PointLight {
+  Point at;
+  Rgb intensity;
+};
+struct DirectionalLight {
+  Direction direction;  // in which the light goes
+  Rgb irradiance;       // of a surface that faces it
 };
 
 struct Camera {
@@ -36,12 +60,23 @@ struct Camera {
   float tan_x = 1, tan_y = 1;       // half the picture's width and height at distance 1
 };
 
+// What weighs a camera ray by its place about a pixel's centre.
+struct Filter {
+  enum class Kind { box, tent, gaussian } kind = Kind::box;
+  float width = .5f;  // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
+};
+
 struct Scene {
-  std::vector<Point> points;
+  std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
+  std::vector<Sphere> spheres;
+  std::vector<Disk> disks;
   std::vector<Surface> surfaces;
-  Rgb sky;  // constant radiance from everywhere
+  std::vector<PointLight> point_lights;
+  std::vector<DirectionalLight> directional_lights;
+  std::optional<Environment> environment;
   Camera camera;
+  Filter filter;
   int width = 0, height = 0, samples = 16;
   int max_depth = 8;  // path edges, as in Mitsuba; -1: no limit
   int rr_depth = 5;
@@ -49,7 +84,7 @@ struct Scene {
 
 struct SceneOptions {
   std::map<std::string, std::string> defines;  // $name
-  std::string sampler = "one-shot";            // of reflectree::samplers(), for type="reflectree"
+  std::string sampler = "one-shot";            // of reflectree::samplers(): "reflectree" and "measured"
 };
 
 // Throws Error, naming line and column.

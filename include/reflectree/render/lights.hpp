@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every light of a scene, one of them drawn for a point that is lit. All are equally likely: meshes (then
+// uniform in area), spheres (uniform in the cone they fill), disks, points, directions and the environment.
+#pragma once
+
+#include "reflectree/render/embree_scene.hpp"
+
+namespace reflectree::render {
+
+struct LightSample {
+  Direction direction;  // towards the light
+  float distance;
+  float pdf;  // per solid angle; 1 and `delta` where there is no density
+  bool delta;
+  Rgb radiance;  // or irradiance, of a delta
+};
+
+class Lights {
+ public:
+  explicit Lights(const Scene& scene);  // holds a reference
+
+  std::optional<LightSample> sample(Point at, Pcg32& u) const;
+  // Density with which `sample` finds what a ray from `at` has hit; 0 for what does not shine.
+  float pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const;
+  float pdf_of_environment(Direction direction) const;
+
+ private:
+  struct Light {
+    enum class Kind { mesh, sphere, disk, point, directional, environment } kind;
+    std::uint32_t index;               // among its kind; of a mesh, its surface
+    std::vector<std::uint32_t> parts;  // triangles
+    std::vector<double> cdf;           // of their areas
+  };
+  std::optional<LightSample> sample_area(Point at, Point on, Direction normal, double area,
+                                         Rgb radiance) const;
+
+  const Scene& scene_;
+  std::vector<Light> lights_;
+  std::vector<double> area_;  // of a surface's triangles, where they shine
+};
+
+}  // namespace reflectree::render

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a surface scatters light, on the whole sphere of directions: what a path tracer asks of a material.
+// Values, shared and immutable inside. The materials are Mitsuba 3's, with its parameters and conventions.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/math/random.hpp"
+#include "reflectree/render/texture.hpp"
+#include "reflectree/sampler/any_sampler.hpp"
+
+namespace reflectree::render {
+
+struct Scattered {
+  Direction wi;
+  float pdf;   // per solid angle; 0 for a delta: nothing competes with it
+  Rgb weight;  // f |cos| / pdf
+  bool delta = false;
+};
+
+// Directions are local to the shading frame; wo.z < 0 is the back.
+class Scattering {
+ public:
+  virtual ~Scattering() = default;
+  // f |cos_theta_i|, without deltas.
+  virtual Rgb f_cos(Direction wo, Direction wi, Uv uv) const = 0;
+  // Density of `sample`, without deltas.
+  virtual float pdf(Direction wo, Direction wi, Uv uv) const = 0;
+  virtual std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const = 0;
+  // False for a method without a density: lights are left to its own directions.
+  virtual bool has_pdf() const { return true; }
+};
+using ScatteringPtr = std::shared_ptr<const Scattering>;
+
+struct Roughness {
+  enum class Kind { beckmann, ggx } kind = Kind::beckmann;
+  float alpha = .1f;
+  bool sample_visible = true;
+};
+
+ScatteringPtr diffuse(Texture reflectance);
+// eta = k = 0: a mirror that reflects all.
+ScatteringPtr conductor(Rgb eta, Rgb k, Texture specular);
+ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular);
+// `eta`: inside over outside. `nonlinear`: colour shifts of the light that goes round inside.
+struct Plastic {
+  float eta = 1.49f / 1.000277f;
+  Texture diffuse{{.5f, .5f, .5f}, nullptr}, specular{{1, 1, 1}, nullptr};
+  bool nonlinear = false;
+};
+ScatteringPtr plastic(Plastic parameters);
+ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness);
+ScatteringPtr dielectric(float eta, Texture reflectance, Texture transmittance);
+// A function above the surface with a sampler of it, ours or any other.
+ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler);
+ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back);
+// (1 - weight) a + weight b.
+ScatteringPtr blend(Texture weight, ScatteringPtr a, ScatteringPtr b);
+
+}  // namespace reflectree::render

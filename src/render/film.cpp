@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/render/film.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+
+#include "reflectree/error.hpp"
+
+namespace reflectree::render {
+
+namespace {
+
+// Offsets from the pixel's centre are drawn from the filter, so that every sample counts alike.
+float offset(Filter filter, Pcg32& u) {
+  const float a = to_unit_float(u());
+  switch (filter.kind) {
+    case Filter::Kind::box:
+      return filter.width * (2 * a - 1);
+    case Filter::Kind::tent:
+      return filter.width * (a + to_unit_float(u()) - 1);
+    case Filter::Kind::gaussian:
+      break;
+  }
+  // Box & Muller; beyond four deviations, 6e-5 of the mass, the filter ends.
+  for (float r = a;; r = to_unit_float(u())) {
+    const float x = std::sqrt(-2 * std::log(1 - r)) * std::cos(2 * pi * to_unit_float(u()));
+    if (std::abs(x) < 4) return filter.width * x;
+  }
+}
+
+Direction through(const Scene& scene, float x, float y) {
+  const Camera& c = scene.camera;
+  const float px = 1 - 2 * x / float(scene.width), py = 1 - 2 * y / float(scene.height);
+  return normalize(c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up);
+}
+
+void add_samples(const PathTracer& tracer, const Scene& scene, int x, int y, int first, int last,
+                 std::uint64_t seed, double* sums) {
+  const auto pixel = std::uint64_t(y) * std::uint64_t(scene.width) + std::uint64_t(x);
+  for (int s = first; s < last; ++s) {
+    Pcg32 u(seed * 0x9e3779b97f4a7c15ULL + std::uint64_t(s), pixel);
+    const float at_x = float(x) + .5f + offset(scene.filter, u);
+    const float at_y = float(y) + .5f + offset(scene.filter, u);
+    const Rgb v = tracer.radiance(scene.camera.origin, through(scene, at_x, at_y), u);
+    for (int k = 0; k < 3; ++k) {
+      const auto value = double(channel(v, k));
+      sums[k] += value, sums[k + 3] += value * value;
+    }
+  }
+}
+
+}  // namespace
+
+bool render_into(Film& film, const Scene& scene, const RenderOptions& options, const Host& host) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const PathTracer tracer(scene, options.technique);
+  if (film.sums.empty()) {
+    film = {scene.width, scene.height, 0, options.seed, {}};
+    film.sums.resize(6 * std::size_t(scene.width) * std::size_t(scene.height));
+  }
+  if (film.width != scene.width || film.height != scene.height || film.seed != options.seed) {
+    throw Error("size or seed differ from the scene's", "--resume", "render anew");
+  }
+  const bool timed = options.seconds > 0;
+  const int goal = timed ? (1 << 30) : options.samples > 0 ? options.samples : scene.samples;
+  const int first = film.samples;
+  while (film.samples < goal && !(timed && film.samples > first && elapsed() >= options.seconds)) {
+    const int pass = std::min(timed ? 1 : 8, goal - film.samples);
+    Film next = film;
+    std::atomic<int> rows = 0;
+    std::atomic<bool> stopped = false;
+    host.parallel_for(std::size_t(scene.height), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end && !stopped; ++y) {
+        if (host.cancelled()) stopped = true;
+        for (int x = 0; x < scene.width && !stopped; ++x) {
+          double* sums = next.sums.data() + 6 * (y * std::size_t(scene.width) + std::size_t(x));
+          add_samples(tracer, scene, x, int(y), film.samples, film.samples + pass, options.seed, sums);
+        }
+        const float done = float(film.samples - first) + float(pass) * float(++rows) / float(scene.height);
+        host.progress(timed ? float(elapsed() / options.seconds) : done / float(goal - first));
+      }
+    });
+    if (stopped) return false;
+    next.samples += pass;
+    film = std::move(next);
+  }
+  return true;
+}
+
+Image to_image(const Film& film) {
+  Image image = make_image(film.width, film.height, {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"});
+  image.metadata = {{"samples", std::to_string(film.samples)}, {"seed", std::to_string(film.seed)}};
+  const double n = std::max(1, film.samples);
+  for (std::size_t i = 0; i < film.sums.size(); i += 6) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double mean = film.sums[i + k] / n, square = film.sums[i + k + 3] / n;
+      image.values[i + k] = float(mean);
+      image.values[i + k + 3] = float(std::sqrt(std::max(0., square - mean * mean) / std::max(1., n - 1)));
+    }
+  }
+  return image;
+}
+
+Image render(const Scene& scene, const RenderOptions& options, const Host& host) {
+  Film film;
+  if (!render_into(film, scene, options, host)) throw Cancelled();
+  return to_image(film);
+}
+
+}  // namespace reflectree::render

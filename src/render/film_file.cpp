@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A film on disk: magic, width, height, samples, seed, and the sums as doubles, little-endian.
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/render/film.hpp"
+
+namespace reflectree::render {
+
+namespace {
+constexpr std::string_view magic = "reflectree film 1\n";
+}
+
+void save_film(const std::string& path, const Film& film) {
+  Bytes out;
+  append_text(out, magic);
+  append_u32(out, std::uint32_t(film.width)), append_u32(out, std::uint32_t(film.height));
+  append_u32(out, std::uint32_t(film.samples)), append_u64(out, film.seed);
+  for (const double v : film.sums) append_f64(out, v);
+  write_file_atomically(path, out);
+}
+
+Film load_film(const std::string& path) {
+  const Bytes bytes = read_file(path, std::uint64_t(1) << 34U);
+  if (!starts_with(bytes, magic)) throw Error("not a film", path, "render anew");
+  ByteReader in(bytes, path);
+  in.seek(magic.size());
+  Film film;
+  const std::uint32_t width = in.u32(), height = in.u32(), samples = in.u32();
+  film.seed = in.u64();
+  const std::uint64_t count = 6 * std::uint64_t(width) * height;
+  if (width == 0 || height == 0 || width > 65536 || height > 65536 || samples > (1U << 30U) ||
+      in.remaining() != 8 * count) {
+    throw Error("a film of the wrong length", path, "render anew");
+  }
+  film.width = int(width), film.height = int(height), film.samples = int(samples);
+  film.sums.resize(count);
+  for (double& v : film.sums) v = in.f64();
+  return film;
+}
+
+}  // namespace reflectree::render

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/render/lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace reflectree::render {
+
+namespace {
+
+constexpr float far_away = std::numeric_limits<float>::infinity();
+
+bool shines(Rgb c) { return c.r + c.g + c.b > 0; }
+
+double area_of(const Disk& d) { return pi_v<double> * double(length(cross(d.s, d.t))); }
+
+// 1 - cos of the cone that a sphere fills, seen from outside; sin^2 / (1 + cos) does not cancel. 0 inside.
+double cone_of(const Sphere& s, Point at) {
+  const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
+  const double sin2 = s.radius * s.radius / dot(to, to);
+  return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
+}
+
+std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance, Pcg32& u) {
+  const double cone = cone_of(s, at);
+  if (!(cone > 0) || s.inwards) return std::nullopt;
+  const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
+  const double d = length(to), drop = to_unit_double(u()) * cone, phi = 2 * M_PI * to_unit_double(u());
+  const double sin2 = drop * (2 - drop), sine = std::sqrt(sin2), cosine = 1 - drop;
+  const auto frame = frame_from_normal((1 / d) * to);
+  const auto w = to_world(frame, Vec3<double>{sine * std::cos(phi), sine * std::sin(phi), cosine});
+  const double chord = std::sqrt(std::max(0., s.radius * s.radius - d * d * sin2));
+  return LightSample{{float(w.x), float(w.y), float(w.z)},
+                     float(d * cosine - chord),
+                     float(1 / (2 * M_PI * cone)),
+                     false,
+                     radiance};
+}
+
+}  // namespace
+
+Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size()) {
+  using Kind = Light::Kind;
+  std::vector<std::size_t> light_of(scene.surfaces.size(), std::size_t(-1));
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& t = scene.triangles[i];
+    if (!shines(scene.surfaces[t.surface].radiance)) continue;
+    if (light_of[t.surface] == std::size_t(-1)) {
+      light_of[t.surface] = lights_.size();
+      lights_.push_back({Kind::mesh, t.surface, {}, {}});
+    }
+    const Point a = scene.vertices[t.corner[0]].at;
+    area_[t.surface] +=
+        double(length(cross(scene.vertices[t.corner[1]].at - a, scene.vertices[t.corner[2]].at - a))) / 2;
+    Light& light = lights_[light_of[t.surface]];
+    light.parts.push_back(i), light.cdf.push_back(area_[t.surface]);
+  }
+  const auto add = [&](Kind kind, std::size_t i) { lights_.push_back({kind, std::uint32_t(i), {}, {}}); };
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
+    if (shines(scene.surfaces[scene.spheres[i].surface].radiance)) add(Kind::sphere, i);
+  }
+  for (std::size_t i = 0; i < scene.disks.size(); ++i) {
+    if (shines(scene.surfaces[scene.disks[i].surface].radiance)) add(Kind::disk, i);
+  }
+  for (std::size_t i = 0; i < scene.point_lights.size(); ++i) add(Kind::point, i);
+  for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) add(Kind::directional, i);
+  if (scene.environment) add(Kind::environment, 0);
+}
+
+std::optional<LightSample> Lights::sample_area(Point at, Point on, Direction normal, double area,
+                                               Rgb radiance) const {
+  const float distance = length(on - at);
+  if (!(distance > 0)) return std::nullopt;
+  const Direction direction = (1 / distance) * (on - at);
+  const float cosine = -dot(normal, direction);
+  if (!(cosine > 0)) return std::nullopt;
+  return LightSample{direction, distance, distance * distance / (cosine * float(area)), false, radiance};
+}
+
+std::optional<LightSample> Lights::sample(Point at, Pcg32& u) const {
+  if (lights_.empty()) return std::nullopt;
+  const auto n = std::uint32_t(lights_.size());
+  const Light& light = lights_[std::size_t((std::uint64_t(u()) * n) >> 32U)];
+  std::optional<LightSample> s;
+  switch (light.kind) {
+    case Light::Kind::mesh: {
+      const double pick = to_unit_double(u()) * light.cdf.back();
+      const auto i = std::upper_bound(light.cdf.begin(), light.cdf.end() - 1, pick) - light.cdf.begin();
+      const float root = std::sqrt(to_unit_float(u())), c = root * to_unit_float(u());
+      const Hit hit{Hit::Kind::triangle, light.parts[std::size_t(i)], 0, root - c, c};
+      const Interaction on = interaction_at(scene_, hit, {}, {});
+      s = sample_area(at, on.at, on.normal, light.cdf.back(), scene_.surfaces[light.index].radiance);
+      break;
+    }
+    case Light::Kind::sphere: {
+      const Sphere& sphere = scene_.spheres[light.index];
+      s = sample_sphere(sphere, at, scene_.surfaces[sphere.surface].radiance, u);
+      break;
+    }
+    case Light::Kind::disk: {
+      const Disk& d = scene_.disks[light.index];
+      const float r = std::sqrt(to_unit_float(u())), phi = 2 * pi * to_unit_float(u());
+      const Point on = d.centre + (r * std::cos(phi)) * d.s + (r * std::sin(phi)) * d.t;
+      s = sample_area(at, on, normalize(cross(d.s, d.t)), area_of(d), scene_.surfaces[d.surface].radiance);
+      break;
+    }
+    case Light::Kind::point: {
+      const PointLight& p = scene_.point_lights[light.index];
+      const float distance = length(p.at - at);
+      if (!(distance > 0)) return std::nullopt;
+      s = LightSample{(1 / distance) * (p.at - at), distance, 1, true,
+                      (1 / (distance * distance)) * p.intensity};
+      break;
+    }
+    case Light::Kind::directional: {
+      const DirectionalLight& d = scene_.directional_lights[light.index];
+      s = LightSample{-d.direction, far_away, 1, true, d.irradiance};
+      break;
+    }
+    case Light::Kind::environment: {
+      const Direction d = scene_.environment->sample(u);
+      s = LightSample{d, far_away, scene_.environment->pdf(d), false, scene_.environment->radiance(d)};
+      break;
+    }
+  }
+  if (s) s->pdf /= float(n);
+  return s;
+}
+
+float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const {
+  if (!shines(scene_.surfaces[on.surface].radiance)) return 0;
+  const float cosine = -dot(on.normal, direction), share = 1 / float(lights_.size());
+  if (!(cosine > 0)) return 0;
+  if (hit.kind == Hit::Kind::sphere) {
+    const Sphere& s = scene_.spheres[hit.index];
+    const double cone = cone_of(s, at);
+    return cone > 0 && !s.inwards ? share * float(1 / (2 * M_PI * cone)) : 0;
+  }
+  const double area = hit.kind == Hit::Kind::disk ? area_of(scene_.disks[hit.index]) : area_[on.surface];
+  return share * hit.distance * hit.distance / (cosine * float(area));
+}
+
+float Lights::pdf_of_environment(Direction direction) const {
+  return scene_.environment->pdf(direction) / float(lights_.size());
+}
+
+}  // namespace reflectree::render

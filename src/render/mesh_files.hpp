@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangle meshes from OBJ and PLY files. A mesh without normals gets smooth ones, as in Mitsuba; with
+// `face_normals`, none, and each triangle its own.
+#pragma once
+
+#include <string>
+
+#include "reflectree/render/scene.hpp"
+
+namespace reflectree::render {
+
+struct Mesh {
+  std::vector<Vertex> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+// Polygons become fans. Throw Error.
+Mesh load_obj(const std::string& path, bool face_normals, bool flip_v);
+Mesh load_ply(const std::string& path, bool face_normals);
+
+// The triangles' normals, weighted by the angle at the vertex (Thuermer & Wuethrich 1998).
+void compute_normals(Mesh& mesh);
+
+}  // namespace reflectree::render

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh_files.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/io/file.hpp"
+
+namespace reflectree::render {
+
+void compute_normals(Mesh& mesh) {
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vertex& here = mesh.vertices[t[k]];
+      const Point a = mesh.vertices[t[(k + 1) % 3]].at - here.at,
+                  b = mesh.vertices[t[(k + 2) % 3]].at - here.at;
+      const Direction n = cross(a, b);
+      const float size = length(n);
+      if (!(size > 0)) continue;
+      const float angle = std::atan2(size, dot(a, b));
+      here.normal = here.normal + (angle / size) * n;
+    }
+  }
+  for (Vertex& v : mesh.vertices) {
+    const float size = length(v.normal);
+    v.normal = size > 0 ? (1 / size) * v.normal : Direction{};
+  }
+}
+
+Mesh load_obj(const std::string& path, bool face_normals, bool flip_v) {
+  const Bytes bytes = read_file(path, std::uint64_t(1) << 32U);
+  tinyobj::ObjReader reader;
+  if (!reader.ParseFromString(std::string(bytes.begin(), bytes.end()), "")) {
+    throw Error("not an OBJ mesh (" + reader.Error() + ")", path, "export it again");
+  }
+  const auto& a = reader.GetAttrib();
+  const auto number = [](const std::vector<float>& v, int i, int width, int k) {
+    const auto at = std::size_t(i) * std::size_t(width) + std::size_t(k);
+    return i >= 0 && at < v.size() ? v[at] : 0.f;
+  };
+  Mesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> known;  // corners that share all three share a vertex
+  for (const auto& shape : reader.GetShapes()) {
+    const auto& corners = shape.mesh.indices;
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+      std::array<std::uint32_t, 3> triangle{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& c = corners[i + k];
+        if (c.vertex_index < 0 || 3 * std::size_t(c.vertex_index) + 2 >= a.vertices.size()) {
+          throw Error("a corner that does not exist", path, "export it again");
+        }
+        const auto [entry, fresh] = known.try_emplace({c.vertex_index, c.texcoord_index, c.normal_index},
+                                                      std::uint32_t(mesh.vertices.size()));
+        triangle[k] = entry->second;
+        if (!fresh) continue;
+        Vertex v;
+        v.at = {number(a.vertices, c.vertex_index, 3, 0), number(a.vertices, c.vertex_index, 3, 1),
+                number(a.vertices, c.vertex_index, 3, 2)};
+        if (!face_normals) {
+          v.normal = {number(a.normals, c.normal_index, 3, 0), number(a.normals, c.normal_index, 3, 1),
+                      number(a.normals, c.normal_index, 3, 2)};
+        }
+        v.uv = {number(a.texcoords, c.texcoord_index, 2, 0), number(a.texcoords, c.texcoord_index, 2, 1)};
+        if (flip_v) v.uv.y = 1 - v.uv.y;
+        mesh.vertices.push_back(v);
+      }
+      mesh.triangles.push_back(triangle);
+    }
+  }
+  if (!face_normals && a.normals.empty()) compute_normals(mesh);
+  return mesh;
+}
+
+}  // namespace reflectree::render

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any function with any sampler; and materials made of others.
+#include "reflectree/render/scattering.hpp"
+
+namespace reflectree::render {
+
+namespace {
+
+struct Sampled final : Scattering {
+  AnyBrdf f;
+  AnySampler<Spectrum> sampler;
+  Sampled(AnyBrdf function, AnySampler<Spectrum> s) : f(std::move(function)), sampler(std::move(s)) {}
+  Rgb f_cos(Direction wo, Direction wi, Uv) const override {
+    return wo.z > 0 && wi.z > 0 ? wi.z * to_rgb(eval(f, wo, wi)) : Rgb{};
+  }
+  float pdf(Direction wo, Direction wi, Uv) const override {
+    return wo.z > 0 && wi.z > 0 ? sampler.pdf(wo, wi) : 0;
+  }
+  std::optional<Scattered> sample(Direction wo, Uv, Pcg32& u) const override {
+    if (!(wo.z > 0)) return std::nullopt;
+    const auto drawn = sampler.sample(wo, u);
+    if (!drawn) return std::nullopt;
+    return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
+  }
+  bool has_pdf() const override { return sampler.has_pdf(); }
+};
+
+constexpr Direction flipped(Direction w) { return {w.x, w.y, -w.z}; }
+
+struct TwoSided final : Scattering {
+  ScatteringPtr front, back;
+  TwoSided(ScatteringPtr a, ScatteringPtr b) : front(std::move(a)), back(std::move(b)) {}
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
+    return wo.z > 0 ? front->f_cos(wo, wi, uv) : back->f_cos(flipped(wo), flipped(wi), uv);
+  }
+  float pdf(Direction wo, Direction wi, Uv uv) const override {
+    return wo.z > 0 ? front->pdf(wo, wi, uv) : back->pdf(flipped(wo), flipped(wi), uv);
+  }
+  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+    if (wo.z > 0) return front->sample(wo, uv, u);
+    auto drawn = back->sample(flipped(wo), uv, u);
+    if (drawn) drawn->wi = flipped(drawn->wi);
+    return drawn;
+  }
+  bool has_pdf() const override { return front->has_pdf() && back->has_pdf(); }
+};
+
+struct Blend final : Scattering {
+  Texture weight;
+  ScatteringPtr a, b;
+  Blend(Texture w, ScatteringPtr first, ScatteringPtr second)
+      : weight(std::move(w)), a(std::move(first)), b(std::move(second)) {}
+  float share(Uv uv) const { return clamp(eval(weight, uv).r, 0.f, 1.f); }
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
+    const float w = share(uv);
+    return (1 - w) * a->f_cos(wo, wi, uv) + w * b->f_cos(wo, wi, uv);
+  }
+  float pdf(Direction wo, Direction wi, Uv uv) const override {
+    const float w = share(uv);
+    return (1 - w) * a->pdf(wo, wi, uv) + w * b->pdf(wo, wi, uv);
+  }
+  // One part is drawn by its share; where both have densities, its direction is weighed by the sum of both.
+  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+    const float w = share(uv);
+    auto drawn = to_unit_float(u()) < w ? b->sample(wo, uv, u) : a->sample(wo, uv, u);
+    if (!drawn || drawn->delta || !has_pdf()) return drawn;
+    drawn->pdf = pdf(wo, drawn->wi, uv);
+    if (!(drawn->pdf > 0)) return std::nullopt;
+    drawn->weight = (1 / drawn->pdf) * f_cos(wo, drawn->wi, uv);
+    return drawn;
+  }
+  bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
+};
+
+}  // namespace
+
+ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler) {
+  return std::make_shared<Sampled>(std::move(f), std::move(sampler));
+}
+ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back) {
+  return std::make_shared<TwoSided>(std::move(front), std::move(back));
+}
+ScatteringPtr blend(Texture weight, ScatteringPtr a, ScatteringPtr b) {
+  return std::make_shared<Blend>(std::move(weight), std::move(a), std::move(b));
+}
+
+}  // namespace reflectree::render

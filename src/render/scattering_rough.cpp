@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Metal and plastic with a microfacet interface.
+#include <array>
+
+#include "cosine_lobe.hpp"
+#include "fresnel.hpp"
+#include "microfacet.hpp"
+#include "reflectree/render/scattering.hpp"
+
+namespace reflectree::render {
+
+namespace {
+
+struct RoughConductor final : Scattering {
+  Microfacets normals;
+  Rgb eta, k;
+  Texture specular;
+  RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t)
+      : normals(r), eta(e), k(absorption), specular(std::move(t)) {}
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
+    if (!(wo.z > 0 && wi.z > 0)) return {};
+    const Direction wh = normalize(wo + wi);
+    const float common = normals.d(wh) * normals.g1(wo) * normals.g1(wi) / (4 * wo.z);
+    return common * (eval(specular, uv) * fresnel_conductor(dot(wo, wh), eta, k));
+  }
+  float pdf(Direction wo, Direction wi, Uv) const override {
+    if (!(wo.z > 0 && wi.z > 0)) return 0;
+    const Direction wh = normalize(wo + wi);
+    return normals.pdf(wo, wh) / (4 * dot(wo, wh));
+  }
+  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+    if (!(wo.z > 0)) return std::nullopt;
+    const Direction wh = normals.sample(wo, u), wi = reflect(wo, wh);
+    const float density = pdf(wo, wi, uv);
+    if (!(wi.z > 0) || !(dot(wo, wh) > 0) || !(density > 0)) return std::nullopt;
+    return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};
+  }
+};
+
+// Mitsuba tabulates what the interface lets through at 64 cosines from 0 to 1 and takes the plain mean of
+// the table for diffuse light from inside; its plastic's albedo depends on both, and ours must be its.
+constexpr std::size_t nodes = 64;
+
+struct RoughPlastic final : Scattering {
+  Plastic p;
+  Microfacets normals;
+  std::array<float, nodes> through{};
+  float inside = 0, specular_weight;
+  RoughPlastic(Plastic parameters, Roughness r)
+      : p(std::move(parameters)), normals(r), specular_weight(specular_share(p)) {
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const float mu = max(1e-6f, float(i) / float(nodes - 1));
+      through[i] = 1 - rough_reflectance(normals, mu, p.eta, 32);
+      sum += double(rough_reflectance(normals, mu, 1 / p.eta, 128) * mu);
+    }
+    inside = float(2 * sum / double(nodes));
+  }
+  float transmittance(float cosine) const {
+    const float x = cosine * float(nodes - 1);
+    const std::size_t i = std::min(std::size_t(x), nodes - 2);
+    return lerp(x - float(i), through[i], through[i + 1]);
+  }
+  float chance(Direction wo) const {
+    const float t = transmittance(wo.z), s = (1 - t) * specular_weight, d = t * (1 - specular_weight);
+    return s + d > 0 ? s / (s + d) : 1;
+  }
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
+    if (!(wo.z > 0 && wi.z > 0)) return {};
+    const Direction wh = normalize(wo + wi);
+    const float gloss = fresnel(dot(wo, wh), p.eta).reflectance * normals.d(wh) * normals.g1(wo) *
+                        normals.g1(wi) / (4 * wo.z);
+    const float t = transmittance(wo.z) * transmittance(wi.z) * cosine_pdf(wi) / (p.eta * p.eta);
+    return gloss * eval(p.specular, uv) + t * ground(eval(p.diffuse, uv), inside, p.nonlinear);
+  }
+  float pdf(Direction wo, Direction wi, Uv) const override {
+    if (!(wo.z > 0 && wi.z > 0)) return 0;
+    const Direction wh = normalize(wo + wi);
+    const float specular = chance(wo);
+    return specular * normals.pdf(wo, wh) / (4 * dot(wo, wh)) + (1 - specular) * cosine_pdf(wi);
+  }
+  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+    if (!(wo.z > 0)) return std::nullopt;
+    const Direction wi =
+        to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u)) : cosine_direction(u);
+    const float density = pdf(wo, wi, uv);
+    if (!(density > 0)) return std::nullopt;
+    return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};
+  }
+};
+
+}  // namespace
+
+ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular) {
+  return std::make_shared<RoughConductor>(roughness, eta, k, std::move(specular));
+}
+ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness) {
+  return std::make_shared<RoughPlastic>(std::move(parameters), roughness);
+}
+
+}  // namespace reflectree::render

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// <bsdf> and <texture>.
+#pragma once
+
+#include "xml_reader.hpp"
+
+namespace reflectree::render {
+
+class MaterialReader {
+ public:
+  MaterialReader(const XmlReader& xml, const Host& host) : xml_(xml), host_(host) {}
+  ScatteringPtr read(Node n) { return read(n, 0); }
+
+ private:
+  ScatteringPtr read(Node n, int depth);
+  ScatteringPtr make(Node n, int depth);
+  ScatteringPtr from_file(Node n);
+  ScatteringPtr from_text(Node n);
+  ScatteringPtr with_sampler(const AnyBrdf& f, const std::string& text);
+  std::vector<ScatteringPtr> inside(Node n, int depth);
+  Texture texture(Node n, const char* name, Rgb otherwise);
+  Roughness roughness(Node n) const;
+  Plastic plastic_of(Node n);
+  float relative_ior(Node n, double inside) const;
+  std::pair<Rgb, Rgb> eta_and_k(Node n) const;
+
+  const XmlReader& xml_;
+  const Host& host_;
+  std::map<std::ptrdiff_t, ScatteringPtr> known_;  // by place in the file: each is made once
+};
+
+}  // namespace reflectree::render

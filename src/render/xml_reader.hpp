@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words of Mitsuba's XML: properties with $names, numbers, transforms, colours. Errors name line and
+// column.
+#pragma once
+
+#include <initializer_list>
+#include <pugixml.hpp>
+
+#include "transform.hpp"
+
+namespace reflectree::render {
+
+using Node = pugi::xml_node;
+using Names = std::initializer_list<std::string_view>;
+
+class XmlReader {
+ public:
+  XmlReader(std::string_view xml, const std::string& path, const SceneOptions& options);
+
+  Node root() const { return root_; }
+  const SceneOptions& options() const { return options_; }
+  std::string beside(const std::string& file) const;
+
+  [[noreturn]] void fail(Node n, const std::string& what, const std::string& how) const;
+  [[noreturn]] void unknown(Node n) const;
+  // Everything inside `n` must be one of these, by name or, where it has none, by tag.
+  void only(Node n, Names known) const;
+  // The element itself or what a <ref> names.
+  Node resolve(Node n) const;
+
+  static std::string type(Node n) { return n.attribute("type").value(); }
+  static Node named(Node n, const char* name) { return n.find_child_by_attribute("name", name); }
+  std::string text(Node n, const char* attribute) const;
+  std::vector<double> numbers(Node n, const std::string& words) const;
+  double number(Node n, const char* attribute, double otherwise) const;
+  Vec3<double> triple(Node n, const char* attribute) const;
+  // Properties of `n`, by name.
+  double property(Node n, const char* name, double otherwise) const;
+  bool flag(Node n, const char* name, bool otherwise) const;
+  std::string word(Node n, const char* name, const std::string& otherwise) const;
+  Vec3<double> point(Node n, const char* name, Vec3<double> otherwise) const;
+  Rgb colour(Node n, const char* name, Rgb otherwise, bool reflectance) const;
+  Matrix transform(Node n) const;
+
+ private:
+  std::string place(std::ptrdiff_t offset) const;
+  Matrix operation(Node op) const;
+
+  std::string_view xml_;
+  const std::string& path_;
+  const SceneOptions& options_;
+  std::map<std::string, std::string> defines_;
+  pugi::xml_document document_;
+  Node root_;
+};
+
+}  // namespace reflectree::render

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "xml_shapes.hpp"
+
+#include "mesh_files.hpp"
+
+namespace reflectree::render {
+
+namespace {
+
+Mesh rectangle() {
+  const Direction up{0, 0, 1};
+  return {{{{-1, -1, 0}, up, {0, 0}},
+           {{1, -1, 0}, up, {1, 0}},
+           {{1, 1, 0}, up, {1, 1}},
+           {{-1, 1, 0}, up, {0, 1}}},
+          {{0, 1, 2}, {0, 2, 3}}};
+}
+
+// Six rectangles from -1 to 1, normals outwards.
+Mesh cube() {
+  Mesh all;
+  const Direction axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const float side : {-1.f, 1.f}) {
+      const Direction n = side * axes[k], s = axes[(k + 1) % 3], t = cross(n, s);
+      const auto base = std::uint32_t(all.vertices.size());
+      for (const auto& [x, y] : {Uv{-1, -1}, Uv{1, -1}, Uv{1, 1}, Uv{-1, 1}})
+        all.vertices.push_back({n + x * s + y * t, n, {(1 + x) / 2, (1 + y) / 2}});
+      all.triangles.push_back({base, base + 1, base + 2});
+      all.triangles.push_back({base, base + 2, base + 3});
+    }
+  }
+  return all;
+}
+
+bool finite(Point p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+void add_mesh(const XmlReader& xml, Node n, Mesh mesh, const Matrix& m, bool flip, std::uint32_t surface,
+              Scene& scene) {
+  const auto base = std::uint32_t(scene.vertices.size());
+  for (Vertex v : mesh.vertices) {
+    v.at = apply(m, {v.at.x, v.at.y, v.at.z}, 1);
+    v.normal = apply_to_normal(m, flip ? -v.normal : v.normal);
+    if (!finite(v.at) || !finite(v.normal))
+      xml.fail(n, "a corner that does not exist or is not finite", "mend the mesh");
+    scene.vertices.push_back(v);
+  }
+  for (auto corner : mesh.triangles) {
+    for (std::uint32_t& c : corner) c += base;
+    const auto at = [&](std::size_t k) { return scene.vertices[corner[k]].at; };
+    if (flip) std::swap(corner[1], corner[2]);
+    const float size = length(cross(at(1) - at(0), at(2) - at(0)));
+    if (size > 0 && std::isfinite(size)) scene.triangles.push_back({corner, surface});  // others have no area
+  }
+}
+
+void add_sphere(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::uint32_t surface,
+                Scene& scene) {
+  const double radius = xml.property(n, "radius", 1);
+  const auto axis = [&](Vec3<double> v) { return apply_double(m, v, 0); };
+  const auto x = axis({1, 0, 0}), y = axis({0, 1, 0}), z = axis({0, 0, 1});
+  const double scale = length(x);
+  const auto near = [&](double a, double b) { return std::abs(a - b) <= 1e-5 * scale * scale; };
+  if (!near(dot(y, y), scale * scale) || !near(dot(z, z), scale * scale) || !near(dot(x, y), 0) ||
+      !near(dot(y, z), 0) || !near(dot(z, x), 0) || !(scale * radius > 0)) {
+    xml.fail(n, "the transform makes no sphere of it", "scale it evenly and by more than 0");
+  }
+  const auto unit = [&](Vec3<double> v) { return to_float((1 / scale) * v); };
+  scene.spheres.push_back({apply_double(m, xml.point(n, "center", {}), 1),
+                           radius * scale,
+                           flip,
+                           {unit(x), unit(y), unit(z)},
+                           surface});
+}
+
+}  // namespace
+
+void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& scene) {
+  Surface surface{nullptr, {}};
+  for (const Node c : n.children()) {
+    const Node meant = xml.resolve(c);
+    const std::string_view tag = meant.name();
+    if (tag == "bsdf") surface.scattering = materials.read(meant);
+    if (tag == "emitter") {
+      if (XmlReader::type(meant) != "area") xml.unknown(meant);
+      xml.only(meant, {"radiance"});
+      surface.radiance = xml.colour(meant, "radiance", {1, 1, 1}, false);
+    }
+  }
+  if (!surface.scattering) surface.scattering = diffuse({{.5f, .5f, .5f}, nullptr});
+  const auto index = std::uint32_t(scene.surfaces.size());
+  scene.surfaces.push_back(std::move(surface));
+
+  const std::string type = XmlReader::type(n);
+  const Matrix m = xml.transform(XmlReader::named(n, "to_world"));
+  const bool flip = xml.flag(n, "flip_normals", false), flat = xml.flag(n, "face_normals", false);
+  const auto file = [&] { return xml.beside(xml.word(n, "filename", "")); };
+  if (type == "sphere") {
+    xml.only(n, {"center", "radius", "to_world", "bsdf", "ref", "emitter", "flip_normals"});
+    add_sphere(xml, n, m, flip, index, scene);
+    return;
+  }
+  if (type == "disk") {
+    xml.only(n, {"to_world", "bsdf", "ref", "emitter", "flip_normals"});
+    const Point s = apply(m, {1, 0, 0}, 0), t = apply(m, {0, 1, 0}, 0);
+    const Disk disk{apply(m, {}, 1), flip ? t : s, flip ? s : t, index};
+    if (length(cross(s, t)) > 0) scene.disks.push_back(disk);
+    return;
+  }
+  if (type == "rectangle" || type == "cube") {
+    xml.only(n, {"to_world", "bsdf", "ref", "emitter", "flip_normals"});
+    add_mesh(xml, n, type == "cube" ? cube() : rectangle(), m, flip, index, scene);
+  } else if (type == "obj" || type == "ply") {
+    xml.only(n, {"filename", "to_world", "bsdf", "ref", "emitter", "face_normals", "flip_normals",
+                 "flip_tex_coords"});
+    const bool flip_v = xml.flag(n, "flip_tex_coords", true);
+    add_mesh(xml, n, type == "obj" ? load_obj(file(), flat, flip_v) : load_ply(file(), flat), m, flip, index,
+             scene);
+  } else {
+    xml.unknown(n);
+  }
+}
+
+}  // namespace reflectree::render
