@@ -8,12 +8,15 @@ namespace reflectree::cli {
 namespace {
 
 struct Options {
-  std::string a, b;
+  std::string a, b, map;
+  double scale = .02;
   render::CompareOptions how;
 };
 
 int run_compare(const Context& context, const Options& o) {
-  const render::ImageDifference d = render::compare(read_image(o.a), read_image(o.b), o.how);
+  const Image a = read_image(o.a), b = read_image(o.b);
+  const render::ImageDifference d = render::compare(a, b, o.how);
+  if (!o.map.empty()) write_png(o.map, render::difference_map(a, b, o.how.block, o.scale));
   Json json;
   std::string text = fmt::format("{:8}{:>12}{:>12}{:>11}{:>9}{:>12}{:>12}\n", "channel", "mean A", "mean B",
                                  "A / B - 1", "z", "MSE", "relMSE");
@@ -56,6 +59,12 @@ void add_image_compare(CLI::App& app, Context& context, Run& run) {
       ->check(CLI::Range(1, 4096).description(""))
       ->capture_default_str()
       ->type_name("PIXELS");
+  command->add_option("-o,--map", o->map, "PNG: red where A is brighter, blue where darker")
+      ->type_name("FILE");
+  command->add_option("--scale", o->scale, "Relative difference of full colour in the map")
+      ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->capture_default_str()
+      ->type_name("X");
   command->callback([&context, &run, o] { run = [&context, o] { return run_compare(context, *o); }; });
 }
 

@@ -83,4 +83,30 @@ ImageDifference compare(const Image& a, const Image& b, const CompareOptions& op
   return result;
 }
 
+Image difference_map(const Image& a, const Image& b, int block, double scale) {
+  Image map = make_image(a.width, a.height, {"R", "G", "B"});
+  const auto light = [](const Image& i, int x, int y) {
+    const float* v = i.values.data() + i.index(x, y);
+    return double(v[i.find("R")] + v[i.find("G")] + v[i.find("B")]);
+  };
+  for (int by = 0; by < a.height; by += block) {
+    for (int bx = 0; bx < a.width; bx += block) {
+      const int ex = std::min(bx + block, a.width), ey = std::min(by + block, a.height);
+      double sum_a = 0, sum_b = 0;
+      for (int y = by; y < ey; ++y) {
+        for (int x = bx; x < ex; ++x) sum_a += light(a, x, y), sum_b += light(b, x, y);
+      }
+      const double t = std::clamp((sum_a - sum_b) / (scale * std::max(sum_b, 1e-9)), -1., 1.);
+      for (int y = by; y < ey; ++y) {
+        for (int x = bx; x < ex; ++x) {
+          float* out = map.values.data() + map.index(x, y);
+          out[0] = float(std::min(1., 1 + t)), out[1] = float(1 - std::abs(t));
+          out[2] = float(std::min(1., 1 - t));
+        }
+      }
+    }
+  }
+  return map;
+}
+
 }  // namespace reflectree::render

@@ -37,6 +37,9 @@ struct CompareOptions {
   double trust = .05;
 };
 
+// Where a is brighter than b, red; where darker, blue; full at a difference of `scale` of b; blocks averaged.
+Image difference_map(const Image& a, const Image& b, int block, double scale);
+
 // Throws Error unless both have R, G and B and one size.
 ImageDifference compare(const Image& a, const Image& b, const CompareOptions& options = {});
 
