@@ -20,6 +20,7 @@ void add_draw(CLI::App& app, Context& context, Run& run);
 void add_bake(CLI::App& app, Context& context, Run& run);
 void add_compare(CLI::App& app, Context& context, Run& run);
 void add_render(CLI::App& app, Context& context, Run& run);
+void add_image_compare(CLI::App& app, Context& context, Run& run);
 void add_demo(CLI::App& app, Context& context, Run& run);
 
 }  // namespace reflectree::cli

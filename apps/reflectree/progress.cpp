@@ -13,7 +13,7 @@ constexpr int bar_width = 30;
 }
 
 Progress::Progress(std::string label)
-    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1), last_(Clock::now()) {}
+    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
   if (drawn_) fmt::print(stderr, "\r\x1b[K"), std::fflush(stderr);
@@ -26,13 +26,16 @@ void Progress::show(float fraction) {
   if (now - last_ < pause) return;
   last_ = now;
   const float share = std::clamp(fraction, 0.f, 1.f);
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const std::string left =
+      share >= .1f ? fmt::format(", {:.0f} s left", elapsed * (1 / double(share) - 1)) : std::string();
   if (terminal_) {
     const auto full = std::size_t(share * bar_width);
-    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %\x1b[K", label_, std::string(full, '#'),
-               std::string(bar_width - full, '.'), double(share) * 100);
+    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %{}\x1b[K", label_, std::string(full, '#'),
+               std::string(bar_width - full, '.'), double(share) * 100, left);
     drawn_ = true;
   } else {
-    fmt::print(stderr, "{}: {:.0f} %\n", label_, double(share) * 100);
+    fmt::print(stderr, "{}: {:.0f} %{}\n", label_, double(share) * 100, left);
   }
   std::fflush(stderr);
 }

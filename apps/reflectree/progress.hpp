@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress on stderr: a bar on a terminal; elsewhere a plain line at most every second. Work that takes
+// Progress on stderr: a bar on a terminal; elsewhere a plain line at most every second; with the time left, once a tenth is done. Work that takes
 // less than half a second shows nothing. The bar is wiped when the display goes.
 #pragma once
 
@@ -23,7 +23,7 @@ class Progress {
   std::mutex mutex_;
   std::string label_;
   bool terminal_, drawn_ = false;
-  Clock::time_point last_;
+  Clock::time_point start_, last_;
 };
 
 }  // namespace reflectree::cli

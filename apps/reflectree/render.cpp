@@ -14,8 +14,18 @@ struct Options {
   std::string scene, output = "out.exr";
   std::vector<std::string> defines;
   render::SceneOptions reading;
-  int samples = 0;
+  render::RenderOptions how;
+  std::string technique = "balance";
+  bool resume = false;
 };
+
+render::Technique technique_of(const std::string& name) {
+  using render::Technique;
+  return name == "power"   ? Technique::power
+         : name == "light" ? Technique::light
+         : name == "brdf"  ? Technique::surface
+                           : Technique::balance;
+}
 
 int run_render(const Context& context, Options& o) {
   for (const std::string& define : o.defines) {
@@ -25,12 +35,20 @@ int run_render(const Context& context, Options& o) {
     o.reading.defines[define.substr(0, at)] = define.substr(at + 1);
   }
   const render::Scene scene = render::load_scene(o.scene, o.reading, context.host("building"));
-  const Image image = render::render(scene, {.samples = o.samples, .seed = context.seed}, context.host("rendering"));
+  const std::string sums = o.output + ".sums";
+  render::Film film;
+  if (o.resume) film = render::load_film(sums);
+  o.how.seed = context.seed, o.how.technique = technique_of(o.technique);
+  const bool whole = render::render_into(film, scene, o.how, context.host("rendering"));
+  if (film.samples == 0) throw Cancelled();
+  const Image image = render::to_image(film);
+  render::save_film(sums, film);
   const std::string png = std::filesystem::path(o.output).replace_extension(".png").string();
   write_exr(o.output, image);
   write_png(png, image);
-  context.say(fmt::format("saved {} and {}", o.output, png));
-  return exit_success;
+  context.say(fmt::format("saved {} and {}, {} samples a pixel{}", o.output, png, film.samples,
+                          whole ? "" : "; --resume goes on"));
+  return whole ? exit_success : exit_interrupted;
 }
 
 }  // namespace
@@ -43,11 +61,22 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->capture_default_str()
       ->type_name("FILE");
   command->add_option("-D", o->defines, "What $NAME stands for in the scene")->type_name("NAME=VALUE");
-  command->add_option("--spp", o->samples, "Samples a pixel; 0: the scene's")
+  command->add_option("--spp", o->how.samples, "Samples a pixel; 0: the scene's")
       ->check(CLI::Range(0, 1 << 30).description(""))
       ->capture_default_str()
       ->type_name("N");
   command->add_option("--sampler", o->reading.sampler, "Sampler of type=\"reflectree\" materials")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      ->add_option("--time", o->how.seconds, "Render for so long instead; the picture depends on the machine")
+      ->check(CLI::Range(0., 1e7).description(""))
+      ->type_name("SECONDS");
+  command->add_flag("--resume", o->resume, "Go on from FILE.sums, with the same scene and seed");
+  command
+      ->add_option("--technique", o->technique,
+                   "How lights are found: balance or power (both ways, by that heuristic), light, brdf")
+      ->check(CLI::IsMember({"balance", "power", "light", "brdf"}).description(""))
       ->capture_default_str()
       ->type_name("NAME");
   command->callback([&context, &run, o] { run = [&context, o] { return run_render(context, *o); }; });

@@ -72,7 +72,7 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
     Film next = film;
     std::atomic<int> rows = 0;
     std::atomic<bool> stopped = false;
-    host.parallel_for(std::size_t(scene.height), [&](std::size_t begin, std::size_t end) {
+    const auto rows_of = [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end && !stopped; ++y) {
         if (host.cancelled()) stopped = true;
         for (int x = 0; x < scene.width && !stopped; ++x) {
@@ -82,7 +82,12 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
         const float done = float(film.samples - first) + float(pass) * float(++rows) / float(scene.height);
         host.progress(timed ? float(elapsed() / options.seconds) : done / float(goal - first));
       }
-    });
+    };
+    try {
+      host.parallel_for(std::size_t(scene.height), rows_of);
+    } catch (const Cancelled&) {
+      stopped = true;
+    }
     if (stopped) return false;
     next.samples += pass;
     film = std::move(next);

@@ -99,18 +99,37 @@ Direction Microfacets::sample(Direction wo, float u1, float u2) const {
   return normalize(Direction{-alpha * (c * along - s * across), -alpha * (s * along + c * across), 1});
 }
 
-float rough_reflectance(const Microfacets& normals, float cos_theta, float eta, int resolution) {
+namespace {
+
+// The mean of `share(wo, wh)` over a grid of visible normals.
+template <class Share>
+float mean_over_normals(const Microfacets& normals, float cos_theta, int resolution, const Share& share) {
   const Direction wo{std::sqrt(max(0.f, 1 - cos_theta * cos_theta)), 0, cos_theta};
   double sum = 0;
   for (int i = 0; i < resolution; ++i) {
     for (int j = 0; j < resolution; ++j) {
       const Direction wh =
           normals.sample(wo, (float(i) + .5f) / float(resolution), (float(j) + .5f) / float(resolution));
-      const Direction wi = reflect(wo, wh);
-      if (wi.z > 0) sum += double(normals.g1(wi) * fresnel(dot(wo, wh), eta).reflectance);
+      sum += double(share(wo, wh));
     }
   }
   return float(sum / (double(resolution) * resolution));
+}
+
+}  // namespace
+
+float rough_reflectance(const Microfacets& normals, float cos_theta, float eta, int resolution) {
+  return mean_over_normals(normals, cos_theta, resolution, [&](Direction wo, Direction wh) {
+    return normals.g1(reflect(wo, wh)) * fresnel(dot(wo, wh), eta).reflectance;
+  });
+}
+
+float rough_transmittance(const Microfacets& normals, float cos_theta, float eta, int resolution) {
+  return mean_over_normals(normals, cos_theta, resolution, [&](Direction wo, Direction wh) {
+    const Dielectric f = fresnel(dot(wo, wh), eta);
+    const Direction wt = (dot(wo, wh) / f.eta + f.cos_theta_t) * wh - (1 / f.eta) * wo;
+    return normals.g1(-wt) * (1 - f.reflectance);
+  });
 }
 
 }  // namespace reflectree::render

@@ -29,5 +29,7 @@ class Microfacets {
 
 // The share of light from wo that single scattering on a dielectric interface of these normals reflects.
 float rough_reflectance(const Microfacets& normals, float cos_theta, float eta, int resolution);
+// The share that it refracts; both are less than 1 together by what shadowing takes.
+float rough_transmittance(const Microfacets& normals, float cos_theta, float eta, int resolution);
 
 }  // namespace reflectree::render

@@ -51,7 +51,7 @@ struct RoughPlastic final : Scattering {
     double sum = 0;
     for (std::size_t i = 0; i < nodes; ++i) {
       const float mu = max(1e-6f, float(i) / float(nodes - 1));
-      through[i] = 1 - rough_reflectance(normals, mu, p.eta, 32);
+      through[i] = rough_transmittance(normals, mu, p.eta, 32);
       sum += double(rough_reflectance(normals, mu, 1 / p.eta, 128) * mu);
     }
     inside = float(2 * sum / double(nodes));

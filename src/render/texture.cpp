@@ -20,7 +20,7 @@ Rgb eval(const Texture& texture, Uv uv) {
   if (!texture.picture) return texture.colour;
   const Image& p = *texture.picture;
   const float u = (uv.x - std::floor(uv.x)) * float(p.width);
-  const float v = (1 - (uv.y - std::floor(uv.y))) * float(p.height);
+  const float v = (uv.y - std::floor(uv.y)) * float(p.height);
   if (texture.nearest) return texel(p, int(u), int(v));
   const float x = std::floor(u - .5f), y = std::floor(v - .5f), s = u - .5f - x, t = v - .5f - y;
   const int i = int(x), j = int(y);

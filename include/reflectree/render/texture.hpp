@@ -14,7 +14,7 @@ using Uv = Vec2<float>;
 
 struct Texture {
   Rgb colour;                            // where there is no picture
-  std::shared_ptr<const Image> picture;  // repeated in u and v; v = 0 is the last row
+  std::shared_ptr<const Image> picture;  // repeated in u and v; v = 0 is the first row
   bool nearest = false;                  // otherwise bilinear between the centres of texels
 };
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// image-compare: how far one picture is from another.
+#include "reflectree/render/image_compare.hpp"
+#include "commands.hpp"
+
+namespace reflectree::cli {
+
+namespace {
+
+struct Options {
+  std::string a, b, map;
+  double scale = .02;
+  render::CompareOptions how;
+};
+
+int run_compare(const Context& context, const Options& o) {
+  const Image a = read_image(o.a), b = read_image(o.b);
+  const render::ImageDifference d = render::compare(a, b, o.how);
+  if (!o.map.empty()) write_png(o.map, render::difference_map(a, b, o.how.block, o.scale));
+  Json json;
+  std::string text = fmt::format("{:8}{:>12}{:>12}{:>11}{:>9}{:>12}{:>12}\n", "channel", "mean A", "mean B",
+                                 "A / B - 1", "z", "MSE", "relMSE");
+  for (const auto& c : d.channels) {
+    const double z = c.mean_error > 0 ? (c.mean_a - c.mean_b) / c.mean_error : 0;
+    text += fmt::format("{:8}{:12.6g}{:12.6g}{:10.3f}%{:9.2f}{:12.4g}{:12.4g}\n", c.channel, c.mean_a,
+                        c.mean_b, 100 * (c.mean_a / c.mean_b - 1), z, c.mse, c.relative_mse);
+    json["channels"].push_back({{"channel", c.channel},
+                                {"mean_a", c.mean_a},
+                                {"mean_b", c.mean_b},
+                                {"mean_error", c.mean_error},
+                                {"mse", c.mse},
+                                {"relative_mse", c.relative_mse}});
+  }
+  if (d.z) {
+    text += fmt::format("z-scores of {} blocks of {} pixels ({} left out), quantiles:\n", d.z->blocks,
+                        o.how.block * o.how.block, d.z->left_out);
+    for (std::size_t i = 0; i < d.z->quantiles.size(); ++i) {
+      text += fmt::format("{:8.0f} %{:8.2f}\n", 100 * render::z_probabilities[i], d.z->quantiles[i]);
+      json["z"].push_back({{"probability", render::z_probabilities[i]}, {"quantile", d.z->quantiles[i]}});
+    }
+  }
+  if (context.json) {
+    context.print_json("image-compare", json);
+  } else {
+    context.print(text);
+  }
+  return exit_success;
+}
+
+}  // namespace
+
+void add_image_compare(CLI::App& app, Context& context, Run& run) {
+  CLI::App* command =
+      app.add_subcommand("image-compare", "Compare two pictures: means, MSE, relMSE, z-scores");
+  auto o = std::make_shared<Options>();
+  command->add_option("a", o->a, "Picture")->required()->type_name("A");
+  command->add_option("b", o->b, "Picture to compare with, the reference")->required()->type_name("B");
+  command->add_option("--block", o->how.block, "Side of the blocks whose z-scores are taken")
+      ->check(CLI::Range(1, 4096).description(""))
+      ->capture_default_str()
+      ->type_name("PIXELS");
+  command->add_option("-o,--map", o->map, "PNG: red where A is brighter, blue where darker")
+      ->type_name("FILE");
+  command->add_option("--scale", o->scale, "Relative difference of full colour in the map")
+      ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->capture_default_str()
+      ->type_name("X");
+  command->callback([&context, &run, o] { run = [&context, o] { return run_compare(context, *o); }; });
+}
+
+}  // namespace reflectree::cli
