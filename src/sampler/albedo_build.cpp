@@ -118,9 +118,9 @@ void advance(Integral& integral, double relative_error) {
   for (const Region& r : integral.regions) {
     integral.value += r.value, integral.error += r.error, square += r.error * r.error;
   }
-  // The rule overestimates its errors, and those of kinks have random signs: three times the root of the
+  // The rule overestimates its errors, and those of kinks have random signs: six times the root of the
   // sum of squares bounds them, where the plain sum would ask for every kink of a table to be resolved.
-  integral.error = min(integral.error, 3 * std::sqrt(square));
+  integral.error = min(integral.error, 6 * std::sqrt(square));
   const double allowed = relative_error * integral.value;
   if (integral.error <= allowed || integral.regions.size() >= max_regions) {
     integral.done = true;
@@ -268,6 +268,8 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
   // Panels of at most 7.5 degrees, and octaves towards the horizon.
   std::vector<double> borders;
   for (int i = 0; i < 12; ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);
+  for (const double near : {0.5, 1.5, 3.75})
+    borders.push_back(near * pi_v<double> / 180);  // kinks of tables crowd
   for (const int octave : {4, 5, 7, 10, 13, 17}) borders.push_back(std::acos(std::ldexp(1., -octave)));
   for (const float theta : field.f.traits().theta_o_knots) {
     if (theta > 1e-3f && cos(theta) > 1.5f * min_cos_theta_o) borders.push_back(double(theta));
@@ -307,7 +309,7 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
         miss = max(miss, std::abs(interpolate(v, 2, i) - v[std::size_t(i)]));
         scale = max(scale, v[std::size_t(i)]);
       }
-      if (miss > 5 * interpolation_error * scale && level < 10) {
+      if (miss > 4 * interpolation_error * scale && level < 10) {
         const double mid = node_of(panel, 2);
         next.push_back({panel.lo, mid}), next.push_back({mid, panel.hi});
       } else {
