@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "measured_data.hpp"
+#include "reflectree/brdf/sgd.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/io/material_file.hpp"
@@ -69,6 +70,21 @@ TEST(Fits, SyntheticTablesAgreeWithTheReference) {
   expect_close(folder / "a.csv", "bronze");
   // Networks are not reciprocal: swapped arguments must show.
   EXPECT_GT(errors_of(folder / "n.csv", "one", true).back(), 1e-2);
+}
+
+// Masking that vanishes at the horizon, over a cosine that does, too: in float the angle's steps of 1e-7
+// would be jumps of 1 % here.
+TEST(Fits, MaskingIsSmoothNearTheHorizon) {
+  SgdChannel channel;
+  channel.ks = 1, channel.lambda = 0.3403f, channel.theta_0 = 0.2f;
+  const Sgd sgd{"grazing", {channel, channel, channel}};
+  for (int i = 0; i < 1000; ++i) {
+    const float z = 1e-5f + 1e-8f * float(i);
+    const Direction wo{sqrt(1 - z * z), 0, z}, wi{-0.6f, 0, 0.8f};
+    const Vec3<double> o{wo.x, wo.y, wo.z}, d{wi.x, wi.y, wi.z};
+    const double fine = sgd(shading_geometry(o, d)).g;
+    ASSERT_NEAR(double(sgd(shading_geometry(wo, wi)).g) / fine, 1, 1e-4) << z;
+  }
 }
 
 TEST(Fits, MeasuredTablesAgreeWithTheReference) {
