@@ -74,6 +74,12 @@ std::string term_text(const MixtureTerm& term) {
   return shortest_text(term.weight) + "*" + (is_sum ? "(" + name + ")" : name);
 }
 
+std::vector<float> united(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<float> sum;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(sum));
+  return sum;
+}
+
 }  // namespace
 
 BrdfTraits combined(const BrdfTraits& a, const BrdfTraits& b) {
@@ -86,8 +92,8 @@ BrdfTraits combined(const BrdfTraits& a, const BrdfTraits& b) {
   sum.channels = std::max(a.channels, b.channels);
   sum.isotropic = a.isotropic && b.isotropic;
   sum.concurrent = a.concurrent && b.concurrent;
-  std::set_union(a.theta_o_knots.begin(), a.theta_o_knots.end(), b.theta_o_knots.begin(),
-                 b.theta_o_knots.end(), std::back_inserter(sum.theta_o_knots));
+  sum.theta_o_knots = united(a.theta_o_knots, b.theta_o_knots);
+  sum.theta_d_knots = united(a.theta_d_knots, b.theta_d_knots);
   return sum;
 }
 

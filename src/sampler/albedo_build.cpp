@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "reflectree/sampler/albedo.hpp"
@@ -77,6 +78,7 @@ struct Integral {
   bool done = false;
 };
 
+constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr std::size_t max_regions = 40000;
 
 void start(Integral& integral, const Domain& domain) {
@@ -126,28 +128,24 @@ void advance(Integral& integral, double relative_error) {
     integral.done = true;
     return;
   }
-  // Halve the worst regions that together hold the surplus of error.
-  std::vector<std::size_t> order(integral.regions.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const double ea = integral.regions[a].error, eb = integral.regions[b].error;
-    return ea != eb ? ea > eb : a < b;
-  });
-  double sum = 0, held = 0;
-  for (const Region& r : integral.regions) sum += r.error;
+  // Halve the worst regions that together hold the surplus of error, by a histogram of the errors down to a
+  // fiftieth of the largest.
+  constexpr std::size_t bins = 256;
+  double sum = 0, largest = 0;
+  for (const Region& r : integral.regions) sum += r.error, largest = max(largest, r.error);
   const double surplus = sum * (1 - 0.9 * allowed / integral.error);
+  const auto bin_of = [&](const Region& r) {
+    return std::min(std::size_t(r.error / largest * bins), bins - 1);
+  };
+  std::array<double, bins> held{};
+  for (const Region& r : integral.regions) held[bin_of(r)] += r.error;
+  std::size_t lowest = bins - 1;
+  for (double above = held[lowest]; above < surplus && lowest > bins / 50; above += held[lowest]) --lowest;
   std::vector<Region> next;
-  std::size_t count = 0;
-  const double smallest = 0.02 * integral.regions[order[0]].error;
-  while (count < order.size() && held < surplus && integral.regions[order[count]].error >= smallest) {
-    held += integral.regions[order[count++]].error;
-  }
-  std::vector<char> split(integral.regions.size(), 0);
-  for (std::size_t k = 0; k < count; ++k) split[order[k]] = 1;
   std::vector<Region> children;
   for (std::size_t i = 0; i < integral.regions.size(); ++i) {
     Region r = integral.regions[i];
-    if (!split[i]) {
+    if (bin_of(r) < lowest) {
       next.push_back(r);
       continue;
     }
@@ -216,6 +214,7 @@ std::vector<double> integrate(const Field& field, const std::vector<float>& cosi
 // so that a few integrals serve many entries of the table.
 struct Panel {
   double lo, hi;
+  std::array<double, 2> predicted{inf, inf};  // at the odd nodes, by the panel that was halved
 };
 double node_of(const Panel& p, int i) {
   return i == 0 ? p.lo : i == 4 ? p.hi : p.lo + 0.25 * i * (p.hi - p.lo);
@@ -268,6 +267,10 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
   // Panels of at most 7.5 degrees, and octaves towards the horizon.
   std::vector<double> borders;
   for (int i = 0; i < 12; ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);
+  // Where a mirror lobe passes the kinks of a table over the difference angle, a panel begins at every second
+  // kink: the one between is met by the middle node, and the parabola shows what it weighs.
+  const std::vector<float>& kinks = field.f.traits().theta_d_knots;
+  for (std::size_t i = 0; i < kinks.size(); i += 2) borders.push_back(double(kinks[i]));
   for (const double near : {0.5, 1.5, 3.75})
     borders.push_back(near * pi_v<double> / 180);  // kinks of tables crowd
   for (const int octave : {4, 5, 7, 10, 13, 17}) borders.push_back(std::acos(std::ldexp(1., -octave)));
@@ -302,16 +305,21 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
     for (std::size_t i = 0; i < a.size(); ++i) nodes[fresh[i]] = a[i] / factor(fresh[i]);
     std::vector<Panel> next;
     for (const Panel& panel : open) {
-      // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less.
+      // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less. What the
+      // parent's polynomial of degree 4 missed there is known, too, and this half misses less.
       const std::array<double, 5> v = values_of(panel);
-      double miss = 0, scale = 0;
+      double miss = 0, parent_miss = 0, scale = 0;
       for (const int i : {1, 3}) {
-        miss = max(miss, std::abs(interpolate(v, 2, i) - v[std::size_t(i)]));
-        scale = max(scale, v[std::size_t(i)]);
+        const auto k = std::size_t(i);
+        miss = max(miss, std::abs(interpolate(v, 2, i) - v[k]));
+        parent_miss = max(parent_miss, std::abs(panel.predicted[k / 2] - v[k]));
+        scale = max(scale, v[k]);
       }
-      if (miss > 4 * interpolation_error * scale && level < 10) {
+      const double allowed = interpolation_error * scale;
+      if (miss > 4 * allowed && parent_miss > 3 * allowed && level < 10) {
         const double mid = node_of(panel, 2);
-        next.push_back({panel.lo, mid}), next.push_back({mid, panel.hi});
+        next.push_back({panel.lo, mid, {interpolate(v, 1, 0.5), interpolate(v, 1, 1.5)}});
+        next.push_back({mid, panel.hi, {interpolate(v, 1, 2.5), interpolate(v, 1, 3.5)}});
       } else {
         closed.push_back(panel);
       }

@@ -126,18 +126,20 @@ Total total_of(const Slab& slab) {
 std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const AlbedoTable& albedo,
                               const BuildOptions& options, const Host& host, BuildReport& report) {
   constexpr float accepted_overshoot = 2e-7f;
-  constexpr int max_passes = 6;
+  constexpr int max_passes = 8;
   const float spare = 0.96f;  // of the budget: the attack will use the rest
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   rules.progress = 0.4f;
   grow(slabs, field, albedo, rules, host, &report.evaluations);
   rules.split_slabs = false;
   std::vector<std::size_t> first_new(slabs.size(), 0);
+  std::vector<float> overshoot(slabs.size(), 1);  // as last estimated; slabs that are good are left alone
   for (int pass = 0; pass < max_passes; ++pass) {
     maximise(slabs, first_new, field, albedo, host, &report.evaluations);
     const float per_leaf = clamp(1.5e6f / float(leaf_count(slabs)), 400.f, 20000.f);
-    report.overshoot_mass = probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), field,
-                                  albedo, host, &report.evaluations);
+    probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, field, albedo,
+          host, &report.evaluations, overshoot);
+    report.overshoot_mass = *std::max_element(overshoot.begin(), overshoot.end());
     bool dear = false;
     for (std::size_t s = 0; s < slabs.size(); ++s) {
       first_new[s] = slabs[s].nodes.size();
@@ -147,6 +149,9 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Field& field, const
     if (dear && pass + 1 < max_passes) {  // what grows last is attacked, too
       rules.goal -= 0.06f * (options.expected_trials - 1);
       grow(slabs, field, albedo, rules, host, &report.evaluations);
+      for (std::size_t s = 0; s < slabs.size(); ++s) {
+        if (slabs[s].nodes.size() > first_new[s]) overshoot[s] = 1;
+      }
     }
   }
   for (const Slab& slab : slabs)

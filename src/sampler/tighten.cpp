@@ -178,9 +178,10 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
 
 }  // namespace
 
-float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
-            const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations) {
-  std::vector<double> overshoot(slabs.size(), 0), mean_cost;
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Field& field,
+           const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations,
+           std::vector<float>& overshoot) {
+  std::vector<double> found(slabs.size(), 0), mean_cost;
   for (const Slab& slab : slabs) {
     double total = 0;
     const std::vector<std::uint32_t> leaves = leaves_in_order(slab);
@@ -189,7 +190,9 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
   }
   std::vector<Climber> climbers;
   const auto count = [&](const Slab& slab, std::uint32_t i) {
-    const double fair = double(slab.nodes[i].leaf.cost) / mean_cost[std::size_t(&slab - slabs.data())];
+    const auto s = std::size_t(&slab - slabs.data());
+    if (overshoot[s] <= accepted) return std::size_t(0);
+    const double fair = double(slab.nodes[i].leaf.cost) / mean_cost[s];
     return std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
   };
   const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
@@ -204,7 +207,7 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
       if (ratios[i] > worst) worst = ratios[i], where = i;
     }
     if (!(excess > 0)) return;
-    overshoot[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
+    found[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
     const Box box = box_of(leaf.cell, field.domain);
     const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
     climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
@@ -212,7 +215,9 @@ float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const 
   probe_leaves(slabs, seed, &FieldValue::upper, field, albedo, host, evaluations, count, visit);
   climb(climbers, 6, field, albedo, host, evaluations);
   for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->share + margin * c.value);
-  return float(*std::max_element(overshoot.begin(), overshoot.end()));
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    if (overshoot[s] > accepted) overshoot[s] = float(found[s]);
+  }
 }
 
 void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Field& field,

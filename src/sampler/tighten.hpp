@@ -14,10 +14,12 @@ namespace reflectree::detail {
 void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Field& field,
               const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
 
-// Random probes, `per_leaf` on average and in proportion to the leaf's cost; every overshoot raises its
-// leaf past the value found. Returns the largest mass of overshoot seen in any slab, before the raise.
-float probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, const Field& field,
-            const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
+// Random probes, `per_leaf` on average and in proportion to the leaf's cost, in the slabs whose mass of
+// overshoot (one a slab) is above `accepted`; every overshoot raises its leaf past the value found. Writes
+// the mass seen, before the raise, to `overshoot`.
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Field& field,
+           const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations,
+           std::vector<float>& overshoot);
 
 // Random probes in every leaf of one-shot trees: where they show, beyond doubt, a larger root mean square
 // than the grid did, the leaf's cost is raised to it, so that growth goes on there.

@@ -66,6 +66,8 @@ struct BrdfTraits {
   bool isotropic = true;             // depends on phi_o - phi_i only
   bool concurrent = true;            // false: called from one thread (a Python callback)
   std::vector<float> theta_o_knots;  // radians: elevations where f has kinks in theta_o
+  std::vector<float> theta_d_knots;  // radians: difference angles where f has kinks; theta_o meets them at a
+                                     // mirror lobe, where the albedo inherits them
   // A factor of f that depends on theta_o (radians) alone, > 0; empty: none known. Albedo tables interpolate
   // what is left of the albedo without it, so that its kinks cost no integral.
   std::function<double(double)> theta_o_factor;
