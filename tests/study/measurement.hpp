@@ -51,6 +51,10 @@ struct Measurement {
 Measurement measure(const StudyMaterial& material, const AnyBrdf& f, const StudyOptions& options,
                     const Host& host);
 
+// Times the build of a material measured before: the median of three. Throws Error where the sampler is not
+// the one that was measured.
+void time_build(const AnyBrdf& f, const Host& host, Measurement& m);
+
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Verdict, check, passed, p_value, line)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measurement, material, group, domain, build_seconds, kib, exact_slabs,
                                    exact_leaves, one_shot_slabs, one_shot_leaves, verdicts, dead_exact,
