@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A slab of theta_o under construction, with its tree over the square.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "leaf.hpp"
+#include "reflectree/sampler/sampler_data.hpp"
+
+namespace reflectree::detail {
+
+struct Node {
+  Split split = Split::leaf;
+  std::uint32_t child = 0;  // first of two
+  Leaf leaf;
+};
+
+struct Slab {
+  float theta_lo, theta_hi;
+  std::array<float, theta_nodes> cos_theta_o, albedo;
+  // Landmarks along the slab: they move with theta_o.
+  struct Landmark {
+    FieldPoint point;
+    float albedo, theta;
+    float travel;  // how far it moves along the slab
+  };
+  std::vector<Landmark> landmarks;
+  std::vector<Node> nodes;  // nodes[0] is the root
+};
+
+// Fills cosines and albedo of a slab with an unsplit root.
+Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& albedo, const Domain& domain);
+// Leaves of a slab in preorder (indices into nodes).
+std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
+// Sum of a member over the leaves.
+float total(const Slab& slab, float Leaf::*member);
+// Splits a leaf along its axis; what was seen in it goes to the child that holds the place.
+void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain);
+
+}  // namespace reflectree::detail
