@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper's results again: pictures, error against samples and time, the law of the error against N, which
 // is a check that can fail (exit code 1), and the cost of precomputation. Prints Markdown; writes its
-// pictures into the folder named first. Measured materials are those of REFLECTREE_DATA: a few, or all after
-// --all.
+// pictures into the folder named first. Measured materials are those of REFLECTREE_DATA, a few, or all after
+// --all; and every .binary file of the folder after --merl. After --only-measured nothing else is done.
 #include <cstdio>
 #include <iostream>
 
@@ -11,6 +11,7 @@
 
 #include "reflectree/draw/figure.hpp"
 #include "reflectree/draw/plot.hpp"
+#include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/peers/paper_sampler.hpp"
 #include "reflectree/study/measure.hpp"
@@ -139,13 +140,24 @@ void show_precomputation(const AnyBrdf& f) {
 int main(int argc, char** argv) {
   try {
     std::string folder;
-    bool all = false;
+    Measured measured;
+    bool only_measured = false;
     for (int i = 1; i < argc; ++i) {
-      if (std::string(argv[i]) == "--all") {
-        all = true;
+      const std::string word = argv[i];
+      if (word == "--all") {
+        measured.all = true;
+      } else if (word == "--only-measured") {
+        only_measured = true;
+      } else if (word == "--merl") {
+        if (i + 1 == argc) throw Error("no folder", word, "name one with .binary files after it");
+        measured.merl = argv[++i];
       } else {
-        folder = argv[i];
+        folder = word;
       }
+    }
+    if (only_measured) {
+      show_measured(measured);
+      return 0;
     }
     const AnyBrdf f = make_brdf(parse_material(text));
     std::printf(
@@ -158,7 +170,7 @@ int main(int argc, char** argv) {
     const bool holds = show_law(f, folder);
     show_time();
     show_precomputation(f);
-    show_measured(all);
+    show_measured(measured);
     return holds ? 0 : 1;
   } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';

@@ -78,6 +78,7 @@ void print(const char* title, const char* x, const std::vector<Row>& rows) {
   std::printf("| exponent");
   for (const auto c : columns) std::printf(" | %.2f", exponent(rows, c));
   std::printf(" |\n\n");
+  std::fflush(stdout);
 }
 
 draw::Figure plot(const std::vector<Row>& rows) {
