@@ -7,10 +7,9 @@
 #include <iostream>
 
 #include "judged.hpp"
+#include "log_plot.hpp"
 #include "paper_parts.hpp"
 
-#include "reflectree/draw/figure.hpp"
-#include "reflectree/draw/plot.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/peers/paper_sampler.hpp"
@@ -42,24 +41,11 @@ Law law(std::string name, const ErrorCurve& curve, const std::vector<double>& sq
 }
 
 draw::Figure plot(const std::vector<Law>& laws) {
-  double lo = 1e300, hi = 0;
-  for (const Law& l : laws) {
-    for (const double y : l.rmse) lo = std::min(lo, y), hi = std::max(hi, y);
-  }
-  draw::Frame f;
-  f.x = {1, laws[0].n.back(), 70, 430, true}, f.y = {lo / 1.3, hi * 1.3, 290, 30, true};
-  f.x_ticks = draw::ticks(f.x), f.y_ticks = draw::ticks(f.y);
-  f.x_title = "*N*", f.y_title = "relative RMSE";
-  draw::Figure figure{640, 335, "Error against samples", "RMSE of reflected radiance under the sky.",
-                      draw::frame(f)};
   constexpr const char* css[] = {"curve-3", "curve-4", "curve", "curve-2"};
-  double y = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i) {
-    figure.body += draw::curve(f, laws[i].n, laws[i].rmse, css[i % 4]);
-    y = std::max(y + 14, f.y.at(laws[i].rmse.back()) + 4);
-    figure.body += draw::label(436, y, laws[i].name);
-  }
-  return figure;
+  std::vector<LogCurve> curves;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    curves.push_back({laws[i].name, css[i % 4], laws[i].n, laws[i].rmse});
+  return log_plot("Error against samples", "*N*", "relative RMSE", curves);
 }
 
 bool show_law(const AnyBrdf& f, const std::string& folder) {
