@@ -58,7 +58,6 @@ figure svg{display:block;width:100%;height:auto}
 .pictures.two{grid-template-columns:repeat(auto-fit,minmax(min(500px,100%),1fr));gap:16px}
 .pictures.two figure{max-width:720px}
 figure.whole{overflow-x:auto}
-figure.whole svg{min-width:760px}
 summary{cursor:pointer;color:var(--link);margin-top:18px}
 .one-of-many{display:none}.one-of-many:target{display:block}
 main:not(:has(.one-of-many:target)) .one-of-many.first{display:block}

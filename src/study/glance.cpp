@@ -49,8 +49,11 @@ std::string plain_label(double x, double y, const std::string& text, Anchor anch
 }
 
 std::string whole(const Figure& figure) {
-  const std::string width = "max-width:" + number(figure.width * 1.15, 0) + "px";
-  return element("figure", {{"class", "whole"}, {"style", width}}, inline_svg(figure)) + "\n";
+  const std::string most = "max-width:" + number(figure.width * 1.15, 0) + "px";
+  const std::string least = "min-width:" + number(std::min(figure.width, 760.), 0) + "px";
+  return element("figure", {{"class", "whole"}, {"style", most}},
+                 element("div", {{"style", least}}, inline_svg(figure))) +
+         "\n";
 }
 
 std::string anchor_of(std::size_t material) { return "material-" + std::to_string(material + 1); }
