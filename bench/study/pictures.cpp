@@ -27,7 +27,7 @@ struct Shot {
   const char *name, *words;
   bool measured;  // needs REFLECTREE_DATA
 };
-constexpr Shot shots[] = {{"metal", "glossy metal in a room lit by way of its ceiling", false},
+constexpr Shot shots[] = {{"metal", "glossy metal in a room", false},
                           {"retro", "retro-reflective spheres under a sun", false},
                           {"ball", "a ball of a measured metallic paint under a measured sky", true},
                           {"plates", "Veach's plates", false}};

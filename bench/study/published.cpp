@@ -7,11 +7,15 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <tuple>
 
 #include "reflectree/error.hpp"
 #include "reflectree/io/material_file.hpp"
+#include "reflectree/peers/density.hpp"
 #include "reflectree/peers/registry.hpp"
-#include "reflectree/verify/reference.hpp"
+#include "reflectree/peers/sliced_density.hpp"
+#include "reflectree/peers/tabulated.hpp"
+#include "reflectree/peers/warp_chain.hpp"
 #include "rgl_own_sampler.hpp"
 
 namespace {
@@ -26,7 +30,7 @@ struct Spread {
          bias = 0;  // relative, of the weight's target; share of none and 0; of the mean
   double deviation() const { return std::sqrt(variance); }
 };
-Spread spread_of(const AnySampler<Spectrum>& sampler, const Target& target, double deg, double albedo = 0) {
+Spread spread_of(const AnySampler<Spectrum>& sampler, const Target& target, double deg) {
   constexpr int samples = 400'000;
   UniformBits u{Pcg32(3)};
   double sum = 0, sum2 = 0, none = 0;
@@ -36,7 +40,7 @@ Spread spread_of(const AnySampler<Spectrum>& sampler, const Target& target, doub
     sum += w, sum2 += w * w, none += !(w > 0);
   }
   const double mean = sum / samples;
-  return {sum2 / samples / (mean * mean) - 1, none / samples, albedo > 0 ? mean / albedo - 1 : 0};
+  return {sum2 / samples / (mean * mean) - 1, none / samples};
 }
 
 void show_visible_normals() {
@@ -105,24 +109,37 @@ void show_warp_chain(const std::string& folder) {
   std::printf("\n");
 }
 
-// Between the file's elevations: is it the sampler or the function that changes?
+// The fitted chain with other sizes and elevations: which of them is short where it is worse than the file's?
 void show_hardest(const std::string& path) {
-  std::printf(
-      "\n## chm_mint beyond 75°\n\n    REFLECTREE_DATA=... build/bin/study_published\n\nStandard deviation "
-      "for "
-      "the luminance, by 400 000 samples; mean: the mean weight against cubature.\n\n| theta_o | fitted "
-      "chain "
-      "| mean | file's own tables | mean | lost |\n|---|---|---|---|---|---|\n");
   const AnyBrdf f = load_brdf(path);
   Target target;
   target.kind = TargetKind::luminance;
-  const auto chain = find_sampler("warp-chain")->make({f, {}, target}, {});
-  const AnySampler<Spectrum> file = study::rgl_own_sampler(path, f);
+  const std::vector<float> elevations = study::rgl_elevations(path);
+  std::printf(
+      "\n## chm_mint beyond 60°\n\n    REFLECTREE_DATA=... build/bin/study_published\n\nStandard deviation "
+      "for "
+      "the luminance, by 400 000 samples. The file's elevations:");
+  for (const float theta : elevations) std::printf(" %.1f", double(theta) * 180 / pi_v<double>);
+  std::printf("°.\n\n| theta_o | file's own tables |");
+  std::vector<AnySampler<Spectrum>> all{study::rgl_own_sampler(path, f)};
+  for (const auto& [name, slices, nodes, normals] :
+       {std::tuple{"16 elevations", 16, 64, 128}, std::tuple{"48 elevations", 48, 64, 128},
+        std::tuple{"16, target 256²", 16, 256, 128}, std::tuple{"16, normals 512 × 256", 16, 64, 512}}) {
+    TabulatedTuning tuning;
+    tuning.warp = {slices, normals, normals / 2, nodes};
+    all.push_back(*make_warp_chain({f, {}, target}, {}, tuning));
+    std::printf(" %s |", name);
+  }
+  WarpOptions options;
+  auto slices = fit_warp_chain(f, target, elevations, options);
+  const SlicedDensity<WarpSlice> aligned(SquareChart::half_vector, elevations, std::move(slices));
+  all.emplace_back("aligned", WeightedSampler<AnyBrdf, SlicedDensity<WarpSlice>>(f, aligned));
+  std::printf(" at the file's elevations |\n|---|---|---|---|---|---|---|\n");
   for (const double deg : {60., 70., 74., 76., 78., 80., 82., 84., 86., 88.}) {
-    const double albedo = reference_albedo(target_function(f, target), at(deg)).value;
-    const Spread a = spread_of(*chain, target, deg, albedo), b = spread_of(file, target, deg, albedo);
-    std::printf("| %g° | %.2f | %+.1f %% | %.2f | %+.1f %% | %.1f %% |\n", deg, a.deviation(), 100 * a.bias,
-                b.deviation(), 100 * b.bias, 100 * b.lost);
+    std::printf("| %g° |", deg);
+    for (const auto& sampler : all) std::printf(" %.2f |", spread_of(sampler, target, deg).deviation());
+    std::printf("\n");
+    std::fflush(stdout);
   }
 }
 

@@ -111,4 +111,8 @@ AnySampler<Spectrum> rgl_own_sampler(const std::string& path, const AnyBrdf& f) 
   return {"file's own", WeightedSampler<AnyBrdf, OwnDensity>(f, std::move(own)), size};
 }
 
+std::vector<float> rgl_elevations(const std::string& path) {
+  return read_field(read_file(path, max_rgl_bytes), "theta_i", path).values;
+}
+
 }  // namespace reflectree::study

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/sampler/any_sampler.hpp"
@@ -12,5 +13,7 @@ namespace reflectree::study {
 
 // `f` is what the file's own reader makes of it. Throws Error.
 AnySampler<Spectrum> rgl_own_sampler(const std::string& path, const AnyBrdf& f);
+// At which elevations of wo, in radians, its tables stand.
+std::vector<float> rgl_elevations(const std::string& path);
 
 }  // namespace reflectree::study

@@ -103,7 +103,7 @@ Figure slice_figure(const MaterialResult& m, const StudyOptions& o) {
            {}};
   for (std::size_t i = 0; i < panels; ++i) {
     const double x = 46 + wide * double(i % 2), y = 26 + high * double(i / 2);
-    const auto angles = slice_angles(o.theta_o_deg[i]);
+    const auto angles = plane_angles(o.theta_o_deg[i]);
     if (m.slices[i].size() != angles.size()) continue;
     const Frame axes = axes_of(angles, m.slices[i], x, y);
     f.body += frame(axes);

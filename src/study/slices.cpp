@@ -23,7 +23,7 @@ double rounded(double x) {
 
 }  // namespace
 
-std::vector<double> slice_angles(double theta_o_deg) {
+std::vector<double> plane_angles(double theta_o_deg) {
   std::vector<double> angles{-89.7, -89, 89, 89.7};
   for (int a = -88; a <= 88; a += 2) angles.push_back(a + 0.1);
   for (const double centre : {-theta_o_deg, theta_o_deg}) {
@@ -41,7 +41,7 @@ std::vector<double> slice_angles(double theta_o_deg) {
 std::vector<double> target_slice(const AnyBrdf& f, const Target& target, double theta_o_deg, double albedo) {
   const Direction wo = direction_from_angles(float(theta_o_deg * pi_v<double> / 180), 0.f);
   std::vector<double> densities;
-  for (const double angle : slice_angles(theta_o_deg)) {
+  for (const double angle : plane_angles(theta_o_deg)) {
     const Direction wi = in_plane(angle);
     densities.push_back(albedo > 0 ? rounded(double(target(eval(f, wo, wi))) * double(wi.z) / albedo) : 0);
   }
@@ -52,7 +52,7 @@ std::vector<double> density_slice(const AnySampler<Spectrum>& sampler, double th
   std::vector<double> densities;
   if (!sampler.has_pdf()) return densities;
   const Direction wo = direction_from_angles(float(theta_o_deg * pi_v<double> / 180), 0.f);
-  for (const double angle : slice_angles(theta_o_deg))
+  for (const double angle : plane_angles(theta_o_deg))
     densities.push_back(rounded(double(sampler.pdf(wo, in_plane(angle)))));
   return densities;
 }

@@ -81,7 +81,7 @@ TEST_F(VerdictOf, ThePageNamesItsMaterials) {
 // Equal densities share a line of the key; curves keep no more points than they need.
 TEST_F(VerdictOf, SlicesAreDrawnWithFewPoints) {
   MaterialResult m;
-  const auto angles = slice_angles(45);
+  const auto angles = plane_angles(45);
   std::vector<double> lobe;
   for (const double a : angles) lobe.push_back(std::exp(-a * a / 800));
   m.slices = {lobe};

@@ -54,7 +54,7 @@ struct SamplerResult {
   double build_seconds = 0;        // thread CPU time, one thread
   std::vector<Cell> cells;         // a theta_o
   std::vector<ErrorCurve> curves;  // a light
-  // A theta_o: its density in the plane of incidence at slice_angles(); empty without a density.
+  // A theta_o: its density in the plane of incidence at plane_angles(); empty without a density.
   std::vector<std::vector<double>> slices;
 };
 

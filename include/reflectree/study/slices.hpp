@@ -11,7 +11,7 @@
 namespace reflectree::study {
 
 // Degrees from the normal, positive on the viewer's side; dense about the mirror direction and wo.
-std::vector<double> slice_angles(double theta_o_deg);
+std::vector<double> plane_angles(double theta_o_deg);
 // At these angles, to four digits: t cos_i / albedo.
 std::vector<double> target_slice(const AnyBrdf& f, const Target& target, double theta_o_deg, double albedo);
 // And the sampler's pdf; empty where it has none.
