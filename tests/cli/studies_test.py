@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""study_paper measures real MERL files where a folder of them is given."""
+"""The studies: study_paper measures real MERL files where a folder of them is given; the scenes of study_pictures
+render."""
 import os
+import pathlib
 import subprocess
 import unittest
 
@@ -38,6 +40,15 @@ class StudyPaper(ProgramTest):
         self.write("merl/broken.binary", b"\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0short")
         self.assertIn("broken.binary", self.measure("--merl", "merl", code=2)[1])
         self.assertIn("Left out", self.measure()[0])
+
+class StudyPictures(ProgramTest):
+    def test_its_scenes_render(self):
+        scenes = pathlib.Path(__file__).parents[2] / "bench" / "study" / "scenes"
+        for name in ("metal", "retro", "plates"):
+            self.run_program("render", scenes / f"{name}.xml", "--spp", 1, "-o", f"{name}.exr")
+            self.run_program("image-compare", f"{name}.exr", f"{name}.exr")
+        # The twin: without its data the fourth is refused.
+        self.assertIn("$", self.run_program("render", scenes / "ball.xml", "--spp", 1, code=2)[1])
 
 
 if __name__ == "__main__":
