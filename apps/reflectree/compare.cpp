@@ -14,9 +14,6 @@
 #include "measure.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
-#include "reflectree/io/image.hpp"
-#include "reflectree/io/material_file.hpp"
-#include "table.hpp"
 
 namespace reflectree::cli {
 
@@ -24,90 +21,6 @@ namespace fs = std::filesystem;
 using namespace study;
 
 namespace {
-
-// Of --quick, and where there is no measured file.
-constexpr const char* built_in[] = {"lambert",       "oren_nayar",     "phong",         "ward:alpha=0.1",
-                                    "cook_torrance", "ggx:alpha=0.5",  "ggx:alpha=0.1", "ggx:alpha=0.02",
-                                    "plastic",       "retro_reflector"};
-
-struct Options {
-  std::vector<std::string> materials;
-  std::string samplers, theta_o_deg, csv, html, resume;
-  std::vector<std::string> envmaps;
-  bool quick = false;
-};
-
-std::vector<std::string> default_materials(const Context& context, bool quick) {
-  std::error_code ignored;
-  const fs::path rgl = context.locate("rgl"), networks = context.locate("nbrdf/nbrdf_merl.csv");
-  std::vector<std::string> measured;
-  if (fs::is_directory(rgl, ignored)) {
-    for (const auto& entry : fs::directory_iterator(rgl)) {
-      if (entry.path().extension() == ".bsdf") measured.push_back("rgl/" + entry.path().filename().string());
-    }
-    std::sort(measured.begin(), measured.end());
-  }
-  if (fs::exists(networks, ignored)) {
-    for (const std::string& m : list_members(networks.string()))
-      measured.push_back("nbrdf/nbrdf_merl.csv#" + m);
-  }
-  if (!quick && !measured.empty()) return measured;
-  if (measured.empty()) context.say("No measured files: name some, or set REFLECTREE_DATA");
-  std::vector<std::string> all(std::begin(built_in), std::end(built_in));
-  if (quick) all = {"lambert", "ggx:alpha=0.1", "plastic", "retro_reflector"};
-  for (std::size_t i = 0; i < measured.size(); i += 15) all.push_back(measured[i]);
-  return all;
-}
-
-std::vector<const SamplerInfo*> chosen(const std::string& list) {
-  std::vector<const SamplerInfo*> all;
-  std::string names;
-  for (const SamplerInfo& info : samplers()) names += (names.empty() ? "" : ", ") + std::string(info.name);
-  for (std::size_t from = 0; !list.empty() && from <= list.size();) {
-    const std::size_t to = std::min(list.find(',', from), list.size());
-    const std::string name = list.substr(from, to - from);
-    const SamplerInfo* info = find_sampler(name);
-    if (!info) throw Error("no sampler '" + name + "'", "--samplers", "choose of " + names);
-    if (std::find(all.begin(), all.end(), info) == all.end()) all.push_back(info);
-    from = to + 1;
-  }
-  if (list.empty()) {
-    for (const SamplerInfo& info : samplers()) all.push_back(&info);
-  }
-  return all;
-}
-
-// Row 0 of the picture is the zenith; luminance by ITU-R BT.709.
-Environment read_environment(const std::string& path) {
-  const Image image = read_image(path);
-  const int r = image.find("R"), g = image.find("G"), b = image.find("B");
-  if (r < 0 || g < 0 || b < 0) throw Error("no channels R, G, B", path, "give a picture in colour");
-  LatLong map{image.width, image.height, {}};
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const float* pixel = image.values.data() + image.index(x, y);
-      map.radiance.push_back(0.2126f * pixel[r] + 0.7152f * pixel[g] + 0.0722f * pixel[b]);
-    }
-  }
-  return make_environment(fs::path(path).stem().string(), std::move(map));
-}
-
-// The procedural ones; then those named, or those of the data folder.
-std::vector<Environment> read_lights(const Context& context, const Options& given) {
-  std::vector<Environment> lights = procedural_environments();
-  std::vector<std::string> paths;
-  for (const std::string& path : given.envmaps) paths.push_back(context.locate(path));
-  const fs::path folder = context.locate("envmaps");
-  std::error_code ignored;
-  if (paths.empty() && !given.quick && fs::is_directory(folder, ignored)) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.path().extension() == ".hdr") paths.push_back(entry.path().string());
-    }
-    std::sort(paths.begin(), paths.end());
-  }
-  for (const std::string& path : paths) lights.push_back(read_environment(path));
-  return lights;
-}
 
 std::string first_value(const char* path, const std::string& key) {
   std::ifstream in(path);
@@ -136,86 +49,59 @@ std::string kept_name(const std::string& material) {
   return fmt::format("{}-{:08x}.json", name.substr(0, 80), std::uint32_t(hash ^ (hash >> 32U)));
 }
 
+// Which of the settings differ, in words.
+std::string differences(const Json& kept, const Json& wanted) {
+  std::string names;
+  for (const auto& [name, value] : wanted.items()) {
+    if (kept.is_object() && kept.contains(name) && kept[name] == value) continue;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
+// Results of another commit, machine or setting never stand beside ours in one table.
 MaterialResult taken_up(const std::string& path, const Json& key) {
+  Json kept;
   try {
-    const Json kept = Json::parse(std::ifstream(path));
-    if (kept.at("options") == key) return material_from(kept.at("result"));
+    kept = Json::parse(std::ifstream(path));
+    if (kept.at("made_by") == key) return material_from(kept.at("result"));
   } catch (const Json::exception&) {
     throw Error("this is no result of compare", path, "remove it, or name another folder");
   }
-  throw Error("the results kept there are of other options", path,
-              "name another folder, or repeat the options");
+  const std::string others = differences(kept["made_by"], key);
+  throw Error("the results kept there differ in " + (others.empty() ? "their settings" : others), path,
+              "name another folder, remove this one to measure again, or repeat the settings");
 }
 
-void show(const Context& context, const std::vector<MaterialResult>& all, const Verdict& v,
-          std::span<const Environment> lights, const StudyOptions& o) {
-  for (const MaterialResult& m : all) {
-    Table table{{m.material, "theta_o", "variance", "sum", "worst", "dead %", "bias", "+-", "ns", "x floor",
-                 "pdf ns", "KiB", "build s"},
-                {}};
-    for (const Environment& light : lights) table.head.push_back("eff " + light.name);
-    for (const SamplerResult& s : m.samplers) {
-      if (!s.fault.empty()) table.rows.push_back({s.sampler, "fault"});
-      for (std::size_t i = 0; i < s.cells.size(); ++i) {
-        const study::Cell& c = s.cells[i];
-        table.rows.push_back(
-            {s.sampler, fmt::format("{}", o.theta_o_deg[i]), fmt::format("{:.3g}", c.target_variance),
-             fmt::format("{:.3g}", c.sum_variance), fmt::format("{:.3g}", c.worst_variance),
-             fmt::format("{:.2g}", c.dead * 100), fmt::format("{:.1e}{}", c.bias, c.biased ? "!" : ""),
-             fmt::format("{:.0e}", c.bias_interval), fmt::format("{:.0f}", c.sample_ns),
-             fmt::format("{:.1f}", c.sample_ns / c.floor_ns),
-             c.pdf_ns > 0 ? fmt::format("{:.0f}", c.pdf_ns) : "-",
-             fmt::format("{:.0f}", double(s.bytes) / 1024), fmt::format("{:.2f}", s.build_seconds)});
-        for (std::size_t e = 0; e < lights.size(); ++e) {
-          table.rows.back().push_back(fmt::format("{:.2e}", c.efficiency(e)));
-        }
-      }
-    }
-    context.print(to_text(table) + "\n");
-  }
-  Table scores{{"sampler", "kind", "materials", "efficiency", "biased cells", "faults"}, {}};
-  for (const Score& s : v.scores) {
-    if (s.materials + s.faults == 0) continue;
-    scores.rows.push_back({s.sampler,
-                           s.ours      ? "ours"
-                           : s.general ? "general"
-                                       : "special",
-                           std::to_string(s.materials), fmt::format("{:.3g}", s.relative_efficiency),
-                           std::to_string(s.biased_cells), std::to_string(s.faults)});
-  }
-  if (v.materials == 0) {
-    context.print("no verdict: ours and a general competitor are wanted on one material at least\n");
-    return;
-  }
-  context.print(to_text(scores));
-  context.print(fmt::format(
-      "\n{}  best of all general methods in geometric mean\n{}  best on nine materials in ten: {} of {}\n",
-      v.best_in_mean ? "holds" : "fails", v.nine_in_ten ? "holds" : "fails", v.won, v.materials));
-  for (const Loss& l : v.losses) {
-    context.print(fmt::format(
-        "loss  {}: {:.3g} of {}, most at {} deg under {}: it has {:.3g} of our RMSE^2, {:.3g} of our time\n",
-        l.material, l.ratio, l.winner, l.theta_o_deg, l.light, l.error_ratio, l.time_ratio));
-  }
+std::string command_of(const CompareOptions& given) {
+  std::string command = "reflectree compare";
+  for (const std::string& m : given.materials) command += " '" + m + "'";
+  if (given.quick) command += " --quick";
+  if (!given.samplers.empty()) command += " --samplers " + given.samplers;
+  if (!given.theta_o_deg.empty()) command += " --theta-o-deg " + given.theta_o_deg;
+  for (const std::string& e : given.envmaps) command += " --envmap '" + e + "'";
+  return command;
 }
 
-int run_compare(const Context& context, const Options& given) {
+int run_compare(const Context& context, const CompareOptions& given) {
   StudyOptions o;
   o.seed = context.seed;
   if (given.quick)
     o.samples = 1U << 13U, o.round_seconds = 5e-4, o.curve_repeats = 8, o.cubature_evaluations = 200'000;
   if (given.quick) o.curve_samples = 256;
   if (!given.theta_o_deg.empty()) o.theta_o_deg = parse_theta_o(given.theta_o_deg);
-  const std::vector<const SamplerInfo*> wanted = chosen(given.samplers);
-  std::vector<std::string> names = given.materials;
-  if (names.empty()) names = default_materials(context, given.quick);
+  const std::vector<const SamplerInfo*> wanted = chosen_samplers(given.samplers);
   // Everything is read before the long work begins.
   std::vector<StudyMaterial> materials;
-  for (const std::string& name : names) {
+  for (const std::string& name : material_names(context, given)) {
     Material material = parse(context, name);
     materials.push_back({name, material, load_material(context, material)});
   }
   const std::vector<Environment> lights = read_lights(context, given);
-  const Json key = key_of(o, lights, wanted);
+  const std::string command = command_of(given), host_machine = machine();
+  const Json options = key_of(o, lights, wanted);
+  Json key = options;  // what kept results must agree in
+  key["commit"] = source_commit(), key["version"] = REFLECTREE_VERSION, key["machine"] = host_machine;
   if (!given.resume.empty()) {
     std::error_code ignored;
     fs::create_directories(given.resume, ignored);
@@ -235,7 +121,7 @@ int run_compare(const Context& context, const Options& given) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!found[i]) {
         found[i] = measure(materials[i], wanted, lights, o, host);
-        const Json whole{{"options", key}, {"result", json_of(*found[i])}};
+        const Json whole{{"made_by", key}, {"result", json_of(*found[i])}};
         if (!kept[i].empty())
           write_file_atomically(kept[i], whole.dump(1, ' ', false, Json::error_handler_t::replace));
       }
@@ -245,10 +131,7 @@ int run_compare(const Context& context, const Options& given) {
   std::vector<MaterialResult> all;
   for (auto& m : found) all.push_back(std::move(*m));
   const Verdict verdict = judge(all, samplers(), lights, o);
-  std::string command = "reflectree compare";
-  if (given.quick) command += " --quick";
-  for (const std::string& m : given.materials) command += " '" + m + "'";
-  const StudyMeta meta{command, REFLECTREE_VERSION, machine(), REFLECTREE_COMMIT};
+  const StudyMeta meta{command, REFLECTREE_VERSION, host_machine, source_commit()};
   if (!given.csv.empty()) write_file_atomically(given.csv, csv_of(all, lights, o));
   if (!given.html.empty()) write_file_atomically(given.html, study_html(all, verdict, lights, o, meta));
   if (context.json) {
@@ -257,7 +140,7 @@ int run_compare(const Context& context, const Options& given) {
     context.print_json("compare", {{"version", meta.version},
                                    {"commit", meta.commit},
                                    {"machine", meta.machine},
-                                   {"options", key},
+                                   {"options", options},
                                    {"materials", json},
                                    {"verdict", json_of(verdict)}});
   } else {
@@ -271,10 +154,12 @@ int run_compare(const Context& context, const Options& given) {
 void add_compare(CLI::App& app, Context& context, Run& run) {
   CLI::App* command =
       app.add_subcommand("compare", "Measure every sampler on materials, and say who is best");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CompareOptions>();
   command
-      ->add_option("MATERIAL", o->materials,
-                   "Materials or files; nothing: the measured ones of the data folder, or models")
+      ->add_option(
+          "MATERIAL", o->materials,
+          "Materials, files, or folders of .binary and .bsdf files; nothing: the measured ones of the data "
+          "folder, or models")
       ->type_name("");
   command->add_option("--samplers", o->samplers, "Only these, with commas; nothing: all")
       ->type_name("NAME,...");

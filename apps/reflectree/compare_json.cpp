@@ -6,8 +6,8 @@ namespace reflectree::study {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cell, target_variance, sum_variance, worst_variance, dead, by_density,
                                    bias, bias_interval, biased, sample_ns, pdf_ns, floor_ns, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorCurve, n, random, stratified)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SamplerResult, sampler, fault, bytes, build_seconds, cells, curves)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaterialResult, material, albedo, albedo_error, samplers)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SamplerResult, sampler, fault, bytes, build_seconds, cells, curves, slices)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaterialResult, material, albedo, albedo_error, slices, samplers)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, sampler, ours, general, materials, biased_cells, faults,
                                    relative_efficiency)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Loss, material, winner, ratio, theta_o_deg, light, error_ratio, time_ratio)

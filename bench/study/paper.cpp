@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper's results again: pictures, error against samples and time, the law of the error against N, which
 // is a check that can fail (exit code 1), and the cost of precomputation. Prints Markdown; writes its
-// pictures into the folder named first. Measured materials are those of REFLECTREE_DATA: a few, or all after
-// --all.
+// pictures into the folder named first. Measured materials are those of REFLECTREE_DATA, a few, or all after
+// --all; and every .binary file of the folder after --merl. After --only-measured nothing else is done.
 #include <cstdio>
 #include <iostream>
 
 #include "judged.hpp"
+#include "log_plot.hpp"
 #include "paper_parts.hpp"
 
-#include "reflectree/draw/figure.hpp"
-#include "reflectree/draw/plot.hpp"
+#include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/peers/paper_sampler.hpp"
 #include "reflectree/study/measure.hpp"
@@ -41,24 +41,11 @@ Law law(std::string name, const ErrorCurve& curve, const std::vector<double>& sq
 }
 
 draw::Figure plot(const std::vector<Law>& laws) {
-  double lo = 1e300, hi = 0;
-  for (const Law& l : laws) {
-    for (const double y : l.rmse) lo = std::min(lo, y), hi = std::max(hi, y);
-  }
-  draw::Frame f;
-  f.x = {1, laws[0].n.back(), 70, 430, true}, f.y = {lo / 1.3, hi * 1.3, 290, 30, true};
-  f.x_ticks = draw::ticks(f.x), f.y_ticks = draw::ticks(f.y);
-  f.x_title = "*N*", f.y_title = "relative RMSE";
-  draw::Figure figure{640, 335, "Error against samples", "RMSE of reflected radiance under the sky.",
-                      draw::frame(f)};
   constexpr const char* css[] = {"curve-3", "curve-4", "curve", "curve-2"};
-  double y = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i) {
-    figure.body += draw::curve(f, laws[i].n, laws[i].rmse, css[i % 4]);
-    y = std::max(y + 14, f.y.at(laws[i].rmse.back()) + 4);
-    figure.body += draw::label(436, y, laws[i].name);
-  }
-  return figure;
+  std::vector<LogCurve> curves;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    curves.push_back({laws[i].name, css[i % 4], laws[i].n, laws[i].rmse});
+  return log_plot("Error against samples", "*N*", "relative RMSE", curves);
 }
 
 bool show_law(const AnyBrdf& f, const std::string& folder) {
@@ -139,13 +126,24 @@ void show_precomputation(const AnyBrdf& f) {
 int main(int argc, char** argv) {
   try {
     std::string folder;
-    bool all = false;
+    Measured measured;
+    bool only_measured = false;
     for (int i = 1; i < argc; ++i) {
-      if (std::string(argv[i]) == "--all") {
-        all = true;
+      const std::string word = argv[i];
+      if (word == "--all") {
+        measured.all = true;
+      } else if (word == "--only-measured") {
+        only_measured = true;
+      } else if (word == "--merl") {
+        if (i + 1 == argc) throw Error("no folder", word, "name one with .binary files after it");
+        measured.merl = argv[++i];
       } else {
-        folder = argv[i];
+        folder = word;
       }
+    }
+    if (only_measured) {
+      show_measured(measured);
+      return 0;
     }
     const AnyBrdf f = make_brdf(parse_material(text));
     std::printf(
@@ -158,7 +156,7 @@ int main(int argc, char** argv) {
     const bool holds = show_law(f, folder);
     show_time();
     show_precomputation(f);
-    show_measured(all);
+    show_measured(measured);
     return holds ? 0 : 1;
   } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';

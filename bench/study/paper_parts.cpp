@@ -8,6 +8,7 @@
 
 #include "judged.hpp"
 #include "reflectree/draw/material_figures.hpp"
+#include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/peers/paper_sampler.hpp"
@@ -86,6 +87,39 @@ Draws jittered(const AnyBrdf& f, Direction wo, int side, Pcg32& u) {
     draws.push_back({wi, 1 / (2 * pi), scaled(eval(f, wo, wi), 2 * pi * z / float(side * side))});
   }
   return draws;
+}
+
+struct MeasuredFile {
+  std::string path, member;
+};
+
+std::vector<std::string> with_ending(const std::string& folder, const char* ending) {
+  std::vector<std::string> paths;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    if (entry.path().extension() == ending) paths.push_back(entry.path().string());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+// Real MERL files first, then the networks fitted to MERL and the RGL files of the data folder.
+std::vector<MeasuredFile> measured_files(const Measured& what) {
+  std::vector<MeasuredFile> files, of_data;
+  if (!what.merl.empty()) {
+    for (const std::string& path : with_ending(what.merl, ".binary")) files.push_back({path, ""});
+    if (files.empty()) throw Error("no .binary files in this folder", what.merl, "name another after --merl");
+  }
+  const char* data = std::getenv("REFLECTREE_DATA");
+  if (!data || !fs::is_directory(data)) return files;
+  const std::string networks = std::string(data) + "/nbrdf/nbrdf_merl.csv";
+  if (fs::exists(networks)) {
+    for (const std::string& member : list_members(networks)) of_data.push_back({networks, member});
+  }
+  for (const std::string& path : with_ending(std::string(data) + "/rgl", ".bsdf"))
+    of_data.push_back({path, ""});
+  for (std::size_t i = 0; i < of_data.size(); i += what.all ? 1 : 12) files.push_back(of_data[i]);
+  return files;
 }
 
 }  // namespace
@@ -185,35 +219,22 @@ void show_time() {
   std::printf("\n");
 }
 
-void show_measured(bool all) {
+void show_measured(const Measured& what) {
   std::printf(
       "\n## Memory and precomputation of measured materials\n\n    REFLECTREE_DATA=... build/bin/study_paper "
-      "docs/results%s\n\n",
-      all ? " --all" : "");
-  const char* data = std::getenv("REFLECTREE_DATA");
-  if (!data || !fs::is_directory(data)) {
-    std::printf("Left out: REFLECTREE_DATA names no folder.\n");
+      "docs/results%s%s\n\n",
+      what.all ? " --all" : "", what.merl.empty() ? "" : " --merl FOLDER");
+  const std::vector<MeasuredFile> files = measured_files(what);
+  if (files.empty()) {
+    std::printf("Left out: REFLECTREE_DATA names no folder, and --merl was not given.\n");
     return;
   }
-  std::vector<std::pair<std::string, std::string>> files;  // path, member
-  const std::string merl = std::string(data) + "/nbrdf/nbrdf_merl.csv";
-  if (fs::exists(merl)) {
-    for (const std::string& m : list_members(merl)) files.emplace_back(merl, m);
-  }
-  std::vector<std::string> rgl;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(std::string(data) + "/rgl", ignored)) {
-    if (entry.path().extension() == ".bsdf") rgl.push_back(entry.path().string());
-  }
-  std::sort(rgl.begin(), rgl.end());
-  for (const std::string& path : rgl) files.emplace_back(path, "");
   std::printf(
       "90 elevations, n_max 4; ours: both modes of one build.\n\n| material | leaves | MB | build s (*) | "
       "trials "
       "| unmet | worst error of I_0 | ours MB | ours build s (*) |\n|---|---|---|---|---|---|---|---|---|\n");
   std::vector<double> mb, seconds, our_mb, our_seconds;
-  for (std::size_t i = 0; i < files.size(); i += all ? 1 : 12) {
-    const auto& [path, member] = files[i];
+  for (const auto& [path, member] : files) {
     const AnyBrdf f = load_brdf(path, member);
     const double start = thread_seconds();
     const PaperSampler paper(f, {}, PaperOptions{});

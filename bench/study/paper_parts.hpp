@@ -14,6 +14,10 @@ void show_few_against_many();
 // Microseconds to a relative RMSE of 1 %.
 void show_time();
 // Memory and precomputation of the measured materials.
-void show_measured(bool all);
+struct Measured {
+  bool all = false;  // of REFLECTREE_DATA; else every twelfth
+  std::string merl;  // a folder of MERL .binary files, each of which is taken; "": none
+};
+void show_measured(const Measured& what);
 
 }  // namespace reflectree::study

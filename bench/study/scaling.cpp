@@ -5,9 +5,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "log_plot.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
-#include "reflectree/draw/figure.hpp"
-#include "reflectree/draw/plot.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/study/measure.hpp"
@@ -78,24 +77,23 @@ void print(const char* title, const char* x, const std::vector<Row>& rows) {
   std::printf("| exponent");
   for (const auto c : columns) std::printf(" | %.2f", exponent(rows, c));
   std::printf(" |\n\n");
+  std::fflush(stdout);
 }
 
-draw::Figure plot(const std::vector<Row>& rows) {
-  std::vector<double> x, exact, one_shot;
-  double lo = 1e300, hi = 0;
+// Both modes' columns over x.
+void save_plot(const std::string& folder, const char* file, const char* title, const char* x, const char* y,
+               const std::vector<Row>& rows, double Row::*exact, double Row::*one_shot) {
+  LogCurve a{"exact", "curve", {}, {}}, b{"one-shot", "curve-2", {}, {}};
   for (const Row& r : rows) {
-    x.push_back(r.x), exact.push_back(r.exact_leaves), one_shot.push_back(r.one_shot_leaves);
-    lo = std::min({lo, r.exact_leaves, r.one_shot_leaves}),
-    hi = std::max({hi, r.exact_leaves, r.one_shot_leaves});
+    if (exact) a.x.push_back(r.x), a.y.push_back(r.*exact);
+    if (one_shot) b.x.push_back(r.x), b.y.push_back(r.*one_shot);
   }
-  draw::Frame f;
-  f.x = {x.back(), x.front(), 70, 460, true}, f.y = {lo / 1.3, hi * 1.3, 290, 30, true};
-  f.x_ticks = draw::ticks(f.x), f.y_ticks = draw::ticks(f.y);
-  f.x_title = "alpha", f.y_title = "leaves of the whole sampler";
-  return {580, 335, "Leaves against sharpness", "Leaves of both modes of a GGX lobe against alpha.",
-          draw::frame(f) + draw::curve(f, x, exact, "curve") + draw::curve(f, x, one_shot, "curve-2") +
-              draw::label(466, f.y.at(exact.front()) + 4, "exact") +
-              draw::label(466, f.y.at(one_shot.front()) + 4, "one-shot")};
+  std::vector<LogCurve> curves;
+  if (exact) curves.push_back(std::move(a));
+  if (one_shot) curves.push_back(std::move(b));
+  std::printf("![%s](%s.svg)\n\n", title, file);
+  if (!folder.empty())
+    write_file_atomically(folder + "/" + file + ".svg", draw::to_svg(log_plot(title, x, y, curves)));
 }
 
 // GGX that burns a chosen time besides.
@@ -124,8 +122,8 @@ int run(const std::string& folder) {
     rows.push_back(measure_build(double(alpha), AnyBrdf(f), {}));
   }
   print("Sharpness", "alpha of GGX", rows);
-  std::printf("![Leaves against sharpness](scaling-sharpness.svg)\n\n");
-  if (!folder.empty()) write_file_atomically(folder + "/scaling-sharpness.svg", draw::to_svg(plot(rows)));
+  save_plot(folder, "scaling-sharpness", "Leaves against sharpness", "alpha of GGX", "leaves of all slabs",
+            rows, &Row::exact_leaves, &Row::one_shot_leaves);
   Ggx f;
   f.alpha = 0.1f;
   rows.clear();
@@ -135,6 +133,8 @@ int run(const std::string& folder) {
     rows.push_back(measure_build(double(trials) - 1, AnyBrdf(f), o));
   }
   print("Accuracy of exact mode", "expected trials - 1", rows);
+  save_plot(folder, "scaling-exact", "Leaves against rejection", "expected trials − 1", "leaves of all slabs",
+            rows, &Row::exact_leaves, nullptr);
   rows.clear();
   for (const float variance : {0.1f, 0.03f, 0.01f, 0.003f, 0.001f, 0.0003f}) {
     BuildOptions o;
@@ -142,6 +142,8 @@ int run(const std::string& folder) {
     rows.push_back(measure_build(double(variance), AnyBrdf(f), o));
   }
   print("Accuracy of one-shot mode", "relative variance", rows);
+  save_plot(folder, "scaling-one-shot", "Leaves against variance", "relative variance", "leaves of all slabs",
+            rows, nullptr, &Row::one_shot_leaves);
   rows.clear();
   for (const double ns : {1., 10., 100., 1000., 10000.}) {
     Slow slow{f, ns};
@@ -161,8 +163,11 @@ int run(const std::string& folder) {
       "## Cost of one evaluation\n\n    build/bin/study_scaling docs/results\n\n"
       "| ns burnt beside f | exact ns (*) | one-shot ns (*) |\n|---|---|---|\n");
   for (const Row& r : rows) std::printf("| %g | %.0f | %.0f |\n", r.x, r.exact_ns, r.one_shot_ns);
+  std::printf("\n");
+  save_plot(folder, "scaling-evaluation", "Time of a sample against that of f", "ns burnt beside f",
+            "ns a sample", rows, &Row::exact_ns, &Row::one_shot_ns);
   show_threads();
-  show_materials();
+  show_materials(folder);
   show_competitors(folder);
   return 0;
 }

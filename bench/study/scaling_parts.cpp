@@ -6,9 +6,8 @@
 #include <thread>
 
 #include "judged.hpp"
+#include "log_plot.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
-#include "reflectree/draw/figure.hpp"
-#include "reflectree/draw/plot.hpp"
 #include "reflectree/io/file.hpp"
 
 namespace reflectree::study {
@@ -94,7 +93,7 @@ void show_threads() {
   }
 }
 
-void show_materials() {
+void show_materials(const std::string& folder) {
   std::printf(
       "\n## Materials\n\n    build/bin/study_scaling docs/results\n\nN samplers of GGX, alpha from .02 to "
       ".5; each "
@@ -132,6 +131,13 @@ void show_materials() {
   }
   std::printf("| exponent | %.2f | %.2f | %.2f | %.2f |\n", log_slope(n, bytes), log_slope(n, time),
               log_slope(n, exact_ns), log_slope(n, one_shot_ns));
+  std::printf("\n![Time of a sample against materials](scaling-materials.svg)\n");
+  if (!folder.empty()) {
+    const draw::Figure figure =
+        log_plot("Time of a sample against materials", "samplers asked in turn", "ns a sample",
+                 {{"exact", "curve", n, exact_ns}, {"one-shot", "curve-2", n, one_shot_ns}});
+    write_file_atomically(folder + "/scaling-materials.svg", draw::to_svg(figure));
+  }
 }
 
 void show_competitors(const std::string& folder) {
@@ -148,18 +154,13 @@ void show_competitors(const std::string& folder) {
   std::vector<Subject> subjects;
   for (const float alpha : alphas) subjects.push_back(subject_of("", ggx(alpha), {10, 45, 75, 85}, {}, o));
   const std::vector<double> x(std::begin(alphas), std::end(alphas));
-  draw::Frame axes;
-  axes.x = {x.back(), x.front(), 70, 430, true}, axes.y = {1e-6, 1e4, 330, 30, true};
-  axes.x_ticks = draw::ticks(axes.x), axes.y_ticks = draw::ticks(axes.y);
-  axes.x_title = "alpha of GGX", axes.y_title = "relative variance of the weight, worst elevation";
-  struct Curve {
-    std::string name, css;
-    std::vector<double> y;
-  };
-  std::vector<Curve> curves;
-  std::size_t place = 0;
+  std::vector<LogCurve> curves;
+  std::size_t ours = 0, others = 0;
   for (const SamplerInfo& info : samplers()) {
-    if (!info.general) continue;
+    if (!info.general) {
+      ++others;
+      continue;
+    }
     std::vector<double> kib, seconds, floor, variance;
     for (const Subject& s : subjects) {
       const double from = thread_seconds();
@@ -174,25 +175,21 @@ void show_competitors(const std::string& folder) {
       std::printf(" | %.2f (%.3g)", log_slope(x, *column), column->back());
     std::printf(" |\n");
     std::fflush(stdout);
+    std::size_t& place = is_ours(info) ? ours : others;  // colours as on the page of compare
     const std::string css =
         is_ours(info) ? "ours dash-" + std::to_string(place % 3)
                       : "hue-" + std::to_string(place % 6) + " dash-" + std::to_string(place / 6 % 3);
-    curves.push_back({std::string(info.name), css, variance});
+    curves.push_back({std::string(info.name), css, x, variance});
     ++place;
   }
   std::printf("\n![Variance against sharpness](scaling-competitors.svg)\n");
   std::sort(curves.begin(), curves.end(),
-            [](const Curve& a, const Curve& b) { return a.y.back() > b.y.back(); });
-  draw::Figure figure{600, 375, "Variance against sharpness", "Relative variance of every general method.",
-                      draw::frame(axes)};
-  // The curves crowd at both ends: a key, the worst first.
-  double y = 36;
-  for (const Curve& c : curves) {
-    figure.body += draw::curve(axes, x, c.y, c.css) + draw::line(440, y - 4, 464, y - 4, c.css) +
-                   draw::label(470, y, c.name, draw::Anchor::start, "tick");
-    y += 16;
-  }
-  if (!folder.empty()) write_file_atomically(folder + "/scaling-competitors.svg", draw::to_svg(figure));
+            [](const LogCurve& a, const LogCurve& b) { return a.y.back() > b.y.back(); });
+  if (folder.empty()) return;
+  const draw::Figure figure =
+      log_plot("Variance against sharpness", "alpha of GGX",
+               "relative variance of the weight, worst elevation; the worst at .01 first", curves);
+  write_file_atomically(folder + "/scaling-competitors.svg", draw::to_svg(figure));
 }
 
 }  // namespace reflectree::study

@@ -9,7 +9,7 @@ namespace reflectree::study {
 // CPU seconds of a build and of a sample when 1, 2, ... threads work at once.
 void show_threads();
 // Samples that go from one of N materials to another.
-void show_materials();
+void show_materials(const std::string& folder);
 // The general methods against the sharpness of GGX, with fitted exponents; the plot into `folder` if it is
 // named.
 void show_competitors(const std::string& folder);

@@ -20,6 +20,7 @@ color:var(--ink);font-family:"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial
 .rt .tick{font-size:10.5px;fill:var(--soft)}
 .rt .note{font-size:11px;fill:var(--soft)}
 .rt .over{font-size:10.5px;fill:#fff;stroke:#09122a;stroke-width:2.4px;stroke-opacity:.65;paint-order:stroke;stroke-linejoin:round}
+.rt .on-pale{font-size:10.5px;fill:#2a1636}.rt .on-dark{font-size:10.5px;fill:#fff}
 .rt .paper{fill:var(--paper)}.rt .plane{fill:var(--plane)}.rt .night{fill:var(--night)}
 .rt path,.rt line,.rt circle,.rt polyline{fill:none;stroke-linecap:round;stroke-linejoin:round}
 .rt .axis{stroke:var(--soft);stroke-width:1}
@@ -49,6 +50,8 @@ color:var(--ink);font-family:"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial
 .rt .bar{fill:var(--bars);fill-opacity:.5;stroke:none}
 .rt .bar-edge{fill:none;stroke:var(--rule);stroke-width:1}
 .rt .bar-line{stroke:var(--bars);stroke-width:1}
+.rt .fill-target{fill:var(--soft);fill-opacity:.24;stroke:none}
+.rt a text{fill:var(--curve)}.rt a:hover text{text-decoration:underline}
 .rt .fill-1{fill:var(--curve);fill-opacity:.22;stroke:none}
 .rt .fill-2{fill:var(--bars);fill-opacity:.28;stroke:none}
 .rt .box{fill:none;stroke:var(--soft);stroke-width:1}

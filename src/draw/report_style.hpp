@@ -55,10 +55,16 @@ figure svg{display:block;width:100%;height:auto}
 .pictures figure{max-width:440px}
 .pictures.wide{grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr))}
 .pictures.wide figure{max-width:620px}
+.pictures.two{grid-template-columns:repeat(auto-fit,minmax(min(500px,100%),1fr));gap:16px}
+.pictures.two figure{max-width:720px}
+figure.whole{overflow-x:auto}
+summary{cursor:pointer;color:var(--link);margin-top:18px}
+.one-of-many{display:none}.one-of-many:target{display:block}
+main:not(:has(.one-of-many:target)) .one-of-many.first{display:block}
 .how{margin-top:12px;columns:2 340px;column-gap:44px;font-size:15px}
 .how p{break-inside:avoid}
 footer{color:var(--soft);font-size:14px;padding:10px 0 60px}
-@media print{body{background:#fff}.card{break-inside:avoid-page;border:0;padding:0}}
+@media print{body{background:#fff}.one-of-many{display:block}.card{break-inside:avoid-page;border:0;padding:0}}
 )";
 
 }  // namespace reflectree::draw

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "page_parts.hpp"
 #include "reflectree/draw/plot.hpp"
-#include "reflectree/study/report.hpp"
 
 namespace reflectree::study {
 
@@ -12,27 +12,6 @@ using namespace draw;
 
 namespace {
 
-// By the place in the registry, so that a sampler looks the same on every figure: ours heavy and blue, the
-// others in six hues with three dashes.
-std::string css(const std::string& name) {
-  std::size_t ours = 0, others = 0;
-  for (const SamplerInfo& info : samplers()) {
-    std::size_t& count = is_ours(info) ? ours : others;
-    if (info.name == name) {
-      return is_ours(info) ? "ours dash-" + std::to_string(ours % 3)
-                           : "hue-" + std::to_string(others % 6) + " dash-" + std::to_string(others / 6 % 3);
-    }
-    ++count;
-  }
-  return "curve-2";  // of stratified points
-}
-std::string hex(Rgb8 c) {
-  constexpr const char* digits = "0123456789abcdef";
-  std::string text = "#";
-  for (const unsigned v : {unsigned(c.r), unsigned(c.g), unsigned(c.b)})
-    text += {digits[v >> 4U], digits[v & 15U]};
-  return text;
-}
 // The cell whose theta_o is nearest to that of the curves.
 std::size_t nearest_to_the_curves(const StudyOptions& o) {
   std::size_t best = 0;
@@ -44,6 +23,20 @@ std::size_t nearest_to_the_curves(const StudyOptions& o) {
 }
 
 }  // namespace
+
+// By the place in the registry: ours heavy and blue, the others in six hues with three dashes.
+std::string curve_class(const std::string& name) {
+  std::size_t ours = 0, others = 0;
+  for (const SamplerInfo& info : samplers()) {
+    std::size_t& count = is_ours(info) ? ours : others;
+    if (info.name == name) {
+      return is_ours(info) ? "ours dash-" + std::to_string(ours % 3)
+                           : "hue-" + std::to_string(others % 6) + " dash-" + std::to_string(others / 6 % 3);
+    }
+    ++count;
+  }
+  return "curve-2";  // of stratified points
+}
 
 Figure error_figure(const MaterialResult& m, std::size_t light, const std::string& light_name,
                     const StudyOptions& o, bool over_time) {
@@ -93,29 +86,36 @@ Figure error_figure(const MaterialResult& m, std::size_t light, const std::strin
   f.body = frame(axes);
   // Labels at the curves' ends, pushed apart.
   std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.y.back() > b.y.back(); });
-  double label_y = 26;
+  constexpr double apart = 13, lowest = 344;
+  std::vector<double> label_y;
+  for (const Line& line : lines)
+    label_y.push_back(std::max(label_y.empty() ? 26 : label_y.back() + apart, axes.y.at(line.y.back()) + 4));
+  for (std::size_t i = lines.size(); i-- > 0;)
+    label_y[i] = std::min(label_y[i], i + 1 < lines.size() ? label_y[i + 1] - apart : lowest);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = lines[i];
-    f.body += curve(axes, line.x, line.y, css(line.name));
-    label_y = std::max(label_y + 13, axes.y.at(line.y.back()) + 4);
-    f.body += label(430, label_y, line.name, Anchor::start, "tick");
-    f.body += draw::line(axes.x.at(line.x.back()), axes.y.at(line.y.back()), 398, label_y - 4, "grid") +
-              draw::line(400, label_y - 4, 424, label_y - 4, css(line.name));
+    const double y = label_y[i];
+    f.body += curve(axes, line.x, line.y, curve_class(line.name));
+    f.body += label(430, y, line.name, Anchor::start, "tick");
+    f.body += draw::line(axes.x.at(line.x.back()), axes.y.at(line.y.back()), 398, y - 4, "grid") +
+              draw::line(400, y - 4, 424, y - 4, curve_class(line.name));
   }
-  f.height = std::max(360., label_y + 14);
   return f;
 }
 
-Figure bar_figure(const std::string& title, const std::string& unit, std::span<const Bar> bars) {
+Figure bar_figure(const std::string& title, const std::string& unit, std::span<const Bar> bars,
+                  bool largest_first) {
   std::vector<Bar> shown;
   for (const Bar& b : bars) {
     if (b.value > 0) shown.push_back(b);
   }
-  std::sort(shown.begin(), shown.end(), [](const Bar& a, const Bar& b) { return a.value < b.value; });
-  Figure f{520, 62 + 20. * double(shown.size()), title, "Bars on a log scale, smallest first.", {}};
+  std::sort(shown.begin(), shown.end(), [&](const Bar& a, const Bar& b) {
+    return largest_first ? a.value > b.value : a.value < b.value;
+  });
+  Figure f{520, 62 + 20. * double(shown.size()), title, "Bars on a log scale, the best first.", {}};
   if (shown.empty()) return f;
-  const double lo = std::pow(10, std::floor(std::log10(shown.front().value)) - 0.2),
-               hi = shown.back().value * 1.3;
+  const auto [least, most] = std::minmax(shown.front().value, shown.back().value);
+  const double lo = std::pow(10, std::floor(std::log10(least)) - 0.2), hi = most * 1.3;
   const double bottom = f.height - 40;
   draw::Frame axes;
   axes.x = {lo, hi, 140, 450, true}, axes.y = {0, 1, bottom, 18};
@@ -131,40 +131,46 @@ Figure bar_figure(const std::string& title, const std::string& unit, std::span<c
   return f;
 }
 
-Figure heat_figure(const MaterialResult& m, std::size_t light, const std::string& light_name,
-                   const StudyOptions& o) {
+Figure heat_figure(const MaterialResult& m, std::span<const Environment> lights, const StudyOptions& o) {
   std::vector<const SamplerResult*> rows;
   for (const SamplerResult& s : m.samplers) {
-    if (!s.cells.empty()) rows.push_back(&s);
+    if (s.cells.size() == o.theta_o_deg.size()) rows.push_back(&s);
   }
-  Figure f{540,
-           30 + 20. * double(rows.size()),
-           "Cost against the best, " + light_name,
-           "RMSE squared times time of each sampler and angle, over the best sampler at that angle.",
+  constexpr double left = 132, wide = 66, high = 20, top = 46, gap = 14;
+  const std::size_t angles = o.theta_o_deg.size();
+  Figure f{left + wide * double(angles + lights.size()) + gap + 6,
+           top + high * double(rows.size()) + 8,
+           "Cost against the best",
+           "RMSE squared times time of each sampler, by angle and by light.",
            {}};
-  constexpr double left = 140, darkest = 1000;
-  const double width = 360 / double(std::max<std::size_t>(o.theta_o_deg.size(), 1));
-  for (std::size_t i = 0; i < o.theta_o_deg.size(); ++i) {
-    const double x = left + width * double(i);
-    f.body += label(x + width / 2, 16, number(o.theta_o_deg[i]) + "°", Anchor::middle, "tick");
-    double best = 1e300;
-    const auto cost = [&](const SamplerResult* s) {
-      return s->cells[i].error[light] * s->cells[i].sample_ns / s->cells[i].floor_ns;
-    };
-    for (const SamplerResult* s : rows) best = std::min(best, cost(s));
+  const auto cost = [](const Cell& c, std::size_t e) {
+    return std::log(c.error[e] * c.sample_ns / c.floor_ns);
+  };
+  HeatCells cells;
+  std::string text =
+      label(left, 14, "by *θ*_o, mean over lights", Anchor::start, "note") +
+      label(left + wide * double(angles) + gap, 14, "by light, mean over *θ*_o", Anchor::start, "note");
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    text += label(left - 6, top + high * double(k) + 14, rows[k]->sampler, Anchor::end, "tick");
+  for (std::size_t column = 0; column < angles + lights.size(); ++column) {
+    const bool by_angle = column < angles;
+    const double x = left + wide * double(column) + (by_angle ? 0 : gap);
+    text += plain_label(
+        x + wide / 2, top - 8,
+        by_angle ? number(o.theta_o_deg[column]) + "°" : lights[column - angles].name.substr(0, 11),
+        Anchor::middle, "tick");
+    std::vector<double> mean(rows.size(), 0);
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const double ratio = cost(rows[k]) / best, y = 24 + 20 * double(k);
-      const double t = std::clamp(1 - std::log(ratio) / std::log(darkest), 0., 1.);
-      f.body += element("rect", {{"x", number(x)},
-                                 {"y", number(y)},
-                                 {"width", number(width - 2)},
-                                 {"height", "18"},
-                                 {"fill", hex(colour(t))}}) +
-                "\n";
-      f.body += label(x + width / 2, y + 13, "× " + pretty(ratio, 2), Anchor::middle, "over");
-      if (i == 0) f.body += label(left - 6, y + 13, rows[k]->sampler, Anchor::end, "tick");
+      const std::size_t n = by_angle ? lights.size() : angles;
+      for (std::size_t j = 0; j < n; ++j)
+        mean[k] += by_angle ? cost(rows[k]->cells[column], j) / double(n)
+                            : cost(rows[k]->cells[j], column - angles) / double(n);
     }
+    const double best = mean.empty() ? 0 : *std::min_element(mean.begin(), mean.end());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      cells.add(x, top + high * double(k), wide - 1, high - 1, std::exp(mean[k] - best));
   }
+  f.body = cells.markup() + text;
   return f;
 }
 

@@ -61,6 +61,7 @@ SamplerResult measure_sampler(const SamplerInfo& info, const AnySampler<Spectrum
                                         seed_of(o.seed, material.name, i),
                                         reference.empty() ? nullptr : &reference[i]));
     measure_time(sampler, wo, o, result.cells.back());
+    result.slices.push_back(density_slice(sampler, o.theta_o_deg[i]));
   }
   return result;
 }
@@ -85,6 +86,8 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
       result.albedo[i] = a.value, result.albedo_error[i] = a.error;
     }
   });
+  for (std::size_t i = 0; i < angles; ++i)
+    result.slices.push_back(target_slice(material.f, {}, o.theta_o_deg[i], result.albedo[i]));
   // One build serves our modes; peers may use it too, so its time is counted where it is ours.
   Host alone;
   alone.cancelled = host.cancelled;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/study/report.hpp"
 
 #include <algorithm>
 
-#include "reflectree/draw/plot.hpp"
+#include "page_parts.hpp"
 #include "reflectree/draw/report.hpp"
 
 namespace reflectree::study {
@@ -14,10 +13,37 @@ namespace {
 
 std::string cell(const std::string& text) { return element("td", {}, escape(text)); }
 
-std::string verdict_section(const Verdict& v) {
-  std::string rows;
+std::string word(bool holds) {
+  return std::string("<span class=\"verdict ") + (holds ? "pass\">holds" : "fail\">fails") + "</span>";
+}
+
+std::string losses_table(std::span<const MaterialResult> materials, const Verdict& v) {
+  std::string out =
+      "<h3>Every loss, and its cause</h3><div class=\"scroll\"><table><thead><tr><th>material</th>"
+      "<th class=\"word\">winner</th><th>ours / winner</th><th class=\"word\">the winner has</th><th>most "
+      "at</th><th>RMSE²<small>winner / ours</small></th><th>time<small>winner / ours</small></th></tr>"
+      "</thead><tbody>";
+  for (const Loss& l : v.losses) {
+    std::size_t place = 0;
+    while (place + 1 < materials.size() && materials[place].material != l.material) ++place;
+    const std::string link = element("a", {{"href", "#" + anchor_of(place)}}, escape(short_name(l.material)));
+    out += "<tr>" + element("th", {{"scope", "row"}}, link) +
+           element("td", {{"class", "word"}}, escape(l.winner)) + cell(pretty(l.ratio)) +
+           element("td", {{"class", "word"}}, escape(cause_of(l))) +
+           cell(number(l.theta_o_deg) + "°, " + l.light) + cell(pretty(l.error_ratio)) +
+           cell(pretty(l.time_ratio)) + "</tr>\n";
+  }
+  return out + "</tbody></table></div>";
+}
+
+std::string verdict_section(std::span<const MaterialResult> materials, const Verdict& v) {
+  std::string rows, tiles;
+  std::vector<Bar> bars;
+  const Score* rival = nullptr;
   for (const Score& s : v.scores) {
     if (s.materials + s.faults == 0) continue;
+    bars.push_back({s.sampler, s.relative_efficiency, s.ours});
+    if (s.general && !s.ours && (!rival || s.relative_efficiency > rival->relative_efficiency)) rival = &s;
     rows += "<tr>" + element("th", {{"scope", "row"}}, escape(s.sampler)) +
             cell(s.ours      ? "ours"
                  : s.general ? "general"
@@ -25,31 +51,28 @@ std::string verdict_section(const Verdict& v) {
             cell(std::to_string(s.materials)) + cell(pretty(s.relative_efficiency)) +
             cell(std::to_string(s.biased_cells)) + cell(std::to_string(s.faults)) + "</tr>\n";
   }
-  std::string out =
-      "<section class=\"card\"><h2>Efficiency for reflected radiance</h2><p>1 / (RMSE² · time), "
-      "averaged over rotations of every light; geometric means, the better of our two modes = 1. RMSE² is "
-      "the "
-      "variance of one sample, and what a mean of 1024 makes of a bias: 1024 (|bias| − its interval)².</p>"
-      "<div class=\"scroll\"><table><thead><tr><th>sampler</th><th>kind</th><th>materials</th>"
-      "<th>relative efficiency</th><th>biased cells</th><th>faults</th></tr></thead><tbody>" +
-      rows + "</tbody></table></div>\n<p>";
-  const auto word = [](bool holds) {
-    return std::string("<span class=\"verdict ") + (holds ? "pass\">holds" : "fail\">fails") + "</span>";
+  const auto tile = [&](const std::string& name, const std::string& value) {
+    tiles += "<div><dt>" + name + "</dt><dd>" + value + "</dd></div>";
   };
-  out += "Best of all general methods in geometric mean: " + word(v.best_in_mean) +
-         " On nine materials in ten: " + word(v.nine_in_ten) + " (" + std::to_string(v.won) + " of " +
-         std::to_string(v.materials) + ")</p>";
-  if (v.losses.empty()) return out + "</section>\n";
-  out +=
-      "<h3>Every loss</h3><div class=\"scroll\"><table><thead><tr><th>material</th><th>winner</th>"
-      "<th>ours / winner</th><th>most at</th><th>RMSE² winner / ours</th><th>time winner / "
-      "ours</th></tr></thead><tbody>";
-  for (const Loss& l : v.losses) {
-    out += "<tr>" + element("th", {{"scope", "row"}}, escape(l.material)) + cell(l.winner) +
-           cell(pretty(l.ratio)) + cell(number(l.theta_o_deg) + "°, " + l.light) +
-           cell(pretty(l.error_ratio)) + cell(pretty(l.time_ratio)) + "</tr>\n";
+  tile("best of all general methods, in geometric mean", word(v.best_in_mean));
+  tile("best on nine materials in ten", word(v.nine_in_ten));
+  tile("materials won", std::to_string(v.won) + " of " + std::to_string(v.materials));
+  if (rival && rival->relative_efficiency > 0) {
+    tile("next best general method", escape(rival->sampler));
+    tile("ours over it, geometric mean", "× " + pretty(1 / rival->relative_efficiency));
   }
-  return out + "</tbody></table></div></section>\n";
+  std::string out =
+      "<section class=\"card\"><h2>Verdict</h2><p class=\"origin\">Efficiency for reflected radiance: 1 / "
+      "(RMSE² · time), averaged over rotations of every light. RMSE² is the variance of one sample, and what "
+      "a mean of 1024 makes of a bias: 1024 (|bias| − its interval)². Geometric means over elevations, "
+      "lights and materials; the better of our two modes = 1.</p><dl>" +
+      tiles + "</dl>\n<div class=\"pictures wide\"><figure>" +
+      inline_svg(bar_figure("Efficiency", "the better of our modes = 1", bars, true)) +
+      "</figure><div class=\"scroll\"><table><thead><tr><th>sampler</th><th>kind</th><th>materials</th>"
+      "<th>relative efficiency</th><th>biased cells</th><th>faults</th></tr></thead><tbody>" +
+      rows + "</tbody></table></div></div>\n";
+  if (!v.losses.empty()) out += losses_table(materials, v);
+  return out + "</section>\n";
 }
 
 // Medians over materials.
@@ -81,50 +104,22 @@ std::string memory_section(std::span<const MaterialResult> materials, const Verd
          inline_svg(bar_figure("One sample", "cosine samples", time)) + "</figure></div></section>\n";
 }
 
-std::string material_table(const MaterialResult& m, const StudyOptions& o) {
-  std::string out =
-      "<div class=\"scroll\"><table><thead><tr><th>sampler</th><th>θ<sub>o</sub></th><th>variance"
-      "<small>target</small></th><th>variance<small>sum</small></th><th>variance<small>worst channel"
-      "</small></th><th>dead</th><th>bias<small>± 95 %</small></th><th>ns<small>sample</small></th>"
-      "<th>× floor</th><th>ns<small>pdf</small></th></tr></thead><tbody>";
-  for (const SamplerResult& s : m.samplers) {
-    if (!s.fault.empty()) {
-      out += "<tr>" + element("th", {}, escape(s.sampler)) +
-             element("td", {{"class", "word"}, {"colspan", "9"}}, escape(s.fault)) + "</tr>\n";
-    }
-    for (std::size_t i = 0; i < s.cells.size(); ++i) {
-      const Cell& c = s.cells[i];
-      out += "<tr>" + element("th", {}, i ? "" : escape(s.sampler)) + cell(number(o.theta_o_deg[i]) + "°") +
-             cell(pretty(c.target_variance)) + cell(pretty(c.sum_variance)) + cell(pretty(c.worst_variance)) +
-             cell(pretty(c.dead * 100, 2) + " %") +
-             cell(pretty(c.bias, 2) + " ± " + pretty(c.bias_interval, 1) + (c.biased ? " biased" : "")) +
-             cell(pretty(c.sample_ns)) + cell(pretty(c.sample_ns / c.floor_ns, 2)) +
-             cell(c.pdf_ns > 0 ? pretty(c.pdf_ns) : "–") + "</tr>\n";
-    }
-  }
-  return out + "</tbody></table></div>";
-}
-
-std::string material_section(const MaterialResult& m, std::span<const Environment> lights,
-                             const StudyOptions& o) {
-  std::string out =
-      "<section class=\"card\"><h2>" + escape(m.material) + "</h2><div class=\"pictures wide\">";
-  for (std::size_t e = 0; e < lights.size(); ++e) {
-    for (const bool over_time : {false, true}) {
-      out += "<figure>" + inline_svg(error_figure(m, e, lights[e].name, o, over_time)) + "</figure>";
-    }
-    out += "<figure>" + inline_svg(heat_figure(m, e, lights[e].name, o)) + "</figure>";
-  }
-  return out + "</div><details><summary>Every figure</summary>" + material_table(m, o) +
-         "</details></section>\n";
+std::string glance_section(std::span<const MaterialResult> materials, const Verdict& v) {
+  return "<section class=\"card\" id=\"materials\"><h2>Every material at a glance</h2><p class=\"origin\">"
+         "What each sampler costs for the same error, over the best of the row: pale is best, dark a "
+         "thousand "
+         "times as dear. A material's name leads to its slices, curves and figures.</p>" +
+         whole(glance_figure(materials, v)) + "</section>\n";
 }
 
 }  // namespace
 
 std::string study_html(std::span<const MaterialResult> materials, const Verdict& verdict,
                        std::span<const Environment> lights, const StudyOptions& o, const StudyMeta& meta) {
-  std::string body = verdict_section(verdict) + memory_section(materials, verdict);
-  for (const MaterialResult& m : materials) body += material_section(m, lights, o);
+  std::string body = verdict_section(materials, verdict) + glance_section(materials, verdict) +
+                     memory_section(materials, verdict);
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    body += material_section(materials[i], i, materials.size(), verdict, lights, o);
   const std::string made = "reflectree " + escape(meta.version) + " · " + escape(meta.machine) +
                            " · commit " + escape(meta.commit) + " · seed " + std::to_string(o.seed) +
                            " · made by " + element("code", {}, escape(meta.command));

@@ -49,6 +49,12 @@ Loss loss_of(const MaterialResult& m, const SamplerResult& ours, const SamplerRe
 
 }  // namespace
 
+std::string cause_of(const Loss& loss) {
+  if (loss.error_ratio > 0.95) return "quicker samples";
+  if (loss.time_ratio > 0.95) return "samples that vary less";
+  return "samples that are quicker and vary less";
+}
+
 double efficiency(const SamplerResult& sampler) {
   double sum = 0, n = 0;
   for (const Cell& c : sampler.cells) {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """compare: the same figures whatever the threads or the interruptions; files; every way to go wrong."""
 import csv
+import json
 import unittest
 
 from program import ProgramTest
@@ -42,10 +43,18 @@ class Compare(ProgramTest):
         self.assertEqual(without_times(whole["materials"]), without_times(partly["materials"]))
         self.assertNotEqual(whole["materials"], partly["materials"])
 
-    def test_kept_results_of_other_options_are_refused(self):
+    def test_kept_results_of_other_settings_are_refused(self):
         self.run_program(*TWO, "--resume", "kept")
-        self.assert_error("other options", *TWO, "--resume", "kept", "--seed", "2")
+        self.assert_error("differ in seed;", *TWO, "--resume", "kept", "--seed", "2")
+        self.assert_error("differ in samplers;", *TWO[:4], "--theta-o-deg", "20", "--resume", "kept")
         path = next((self.folder / "kept").iterdir())
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        for setting in ("commit", "machine", "version"):
+            changed = {**kept, "made_by": {**kept["made_by"], setting: "another"}}
+            path.write_text(json.dumps(changed), encoding="utf-8")
+            self.assert_error(f"differ in {setting};", *TWO, "--resume", "kept")
+        path.write_text(json.dumps(kept), encoding="utf-8")
+        self.run_program(*TWO, "--resume", "kept")  # the twin: unchanged, it is taken up
         path.write_text("{")
         self.assert_error("no result of compare", *TWO, "--resume", "kept")
 
@@ -60,6 +69,26 @@ class Compare(ProgramTest):
         self.assertNotIn("<script", page)
         self.assertNotIn("http", page)
         self.assertIn("ggx:alpha=0.4", page)
+
+    def test_slices(self):
+        """In the plane of incidence exact mode's density is the target's, and a uniform one is not."""
+        found = self.json_of("compare", "ggx:alpha=0.4", "--quick", "--samplers", "exact,uniform", "--theta-o-deg", "20")
+        material = found["materials"][0]
+        target = material["slices"][0]
+        exact, uniform = (s["slices"][0] for s in material["samplers"])
+        self.assertGreater(len(target), 100)
+        self.assertEqual((len(exact), len(uniform)), (len(target), len(target)))
+        self.assertLess(max(abs(a - b) / b for a, b in zip(exact, target)), 2e-3)
+        self.assertGreater(max(abs(a - b) / b for a, b in zip(uniform, target)), 1)
+
+    def test_a_folder_of_files(self):
+        folder = self.folder / "measured"
+        folder.mkdir()
+        self.assert_error("no measured files", "compare", "measured", "--quick")
+        self.run_program("bake", "phong", "-o", "measured/baked.binary")
+        found = self.json_of("compare", "measured", "--quick", "--samplers", "exact,cosine", "--theta-o-deg", "20")
+        self.assertEqual([m["material"] for m in found["materials"]], ["measured/baked.binary"])
+        self.assertLess(found["materials"][0]["samplers"][0]["cells"][0]["target_variance"], 1e-4)
 
     def test_a_measured_light(self):
         # 8 x 4 pixels of (1, .5, .25) and exponent 129: radiances 1, .5, .25, flat records.

@@ -121,19 +121,29 @@ TEST(PaperSampler, DrawsManyAtOnceWithoutAllocating) {
     Pcg32 rest(5);
     UniformBits u(rest);
     const std::size_t before = allocations();
-    double sum = 0, y = 0;
+    double sum = 0, x = 0, y = 0;
     std::size_t filled = 0;
     for (int round = 0; round < 20; ++round) {
       const std::size_t n = sampler.sample_n(wo, u, out);
       filled += n;
       for (std::size_t i = 0; i < n; ++i) {
         sum += double(Target()(out[i].weight)), y += double(dot(out[i].wi, Direction{-wo.y, wo.x, 0}));
+        x += double(dot(out[i].wi, Direction{wo.x, wo.y, 0}));
       }
     }
     EXPECT_EQ(allocations(), before);
     EXPECT_EQ(filled, 20'000U);
     EXPECT_NEAR(sum / 20'000, reference_albedo(target_function(f), wo).value, 2e-3 * sum / 20'000);
-    EXPECT_NEAR(y / 20'000, 0, 0.01);  // turned with wo
+    EXPECT_NEAR(y / 20'000, 0, 0.01);           // turned with wo
+    EXPECT_GT(std::abs(x / 20'000), 0.03);  // the twin: the lobe seen from the side
+    std::vector<PaperTree> trees = sampler.trees();
+    for (PaperTree& tree : trees) tree.nodes[0].integral *= 1.01;  // the twin: a wrong normaliser
+    const PaperSampler twin(f, {}, trees, false, options);
+    UniformBits again{Pcg32(5)};
+    double wrong = 0;
+    const std::size_t drawn = twin.sample_n(wo, again, out);
+    for (std::size_t i = 0; i < drawn; ++i) wrong += double(Target()(out[i].weight));
+    EXPECT_GT(std::abs(wrong / 1000 - sum / 20'000), 5e-3 * sum / 20'000);
     (void)build_paper_tree(f, {}, wo);
     EXPECT_GT(allocations(), before);  // the twin: the counter counts
   }

@@ -22,31 +22,47 @@ TEST(PaperTree, LeavesMeetTheirTest) {
   EXPECT_GT(build_paper_tree(brdf("ggx:alpha=0.05"), {}, at(40), options).unmet, 0U);
 }
 
-// Against random points: none of the disk's lies outside of the clipped rectangle, and no side could shrink.
+// Against points of the node in the disk: does the box lose none of them, and could no side shrink?
+struct Fit {
+  bool keeps = true, tight = true;
+};
+Fit fit_of(const PaperNode& node, const PaperBox& box) {
+  double x0 = 9, x1 = -9, y0 = 9, y1 = -9;
+  for (int i = 0; i <= 400; ++i) {
+    for (int j = 0; j <= 400; ++j) {
+      const double x = double(node.x) + i / 400. * double(node.size),
+                   y = double(node.y) + j / 400. * double(node.size);
+      if (x * x + y * y > 1) continue;
+      x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+    }
+  }
+  Fit fit;
+  if (x0 > x1) return fit;
+  const double step = double(node.size) / 200;
+  for (const double spare : {x0 - box.x0, box.x1 - x1, y0 - box.y0, box.y1 - y1})
+    fit.keeps = fit.keeps && spare >= -1e-9, fit.tight = fit.tight && spare <= step;
+  return fit;
+}
+
 TEST(PaperTree, ClippingKeepsTheDiskAndIsTight) {
   Pcg32 u(1);
+  int lossy = 0, loose = 0;  // twins that were seen
   for (int k = 0; k < 200; ++k) {
     const float size = 1.f / float(1 << (u() % 5));
     const auto cells = std::uint32_t(2 / size);
     const PaperNode node{-1 + size * float(u() % cells), -1 + size * float(u() % cells), size};
     const PaperBox box = clip_to_disk(node);
-    double x0 = 9, x1 = -9, y0 = 9, y1 = -9;
-    for (int i = 0; i <= 400; ++i) {
-      for (int j = 0; j <= 400; ++j) {
-        const double x = double(node.x) + i / 400. * double(size),
-                     y = double(node.y) + j / 400. * double(size);
-        if (x * x + y * y > 1) continue;
-        x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
-      }
-    }
-    if (x0 > x1) continue;
-    const double step = double(size) / 200;
-    const double spare[] = {x0 - box.x0, box.x1 - x1, y0 - box.y0, box.y1 - y1};
-    for (const double d : spare) {
-      EXPECT_GE(d, -1e-9);
-      EXPECT_LE(d, step);
-    }
+    const Fit fit = fit_of(node, box);
+    EXPECT_TRUE(fit.keeps && fit.tight) << node.x << " " << node.y << " " << size;
+    PaperBox twin = box;  // the whole node, unclipped
+    twin.x0 = double(node.x), twin.x1 = double(node.x + size);
+    twin.y0 = double(node.y), twin.y1 = double(node.y + size);
+    loose += !fit_of(node, twin).tight;
+    twin = box, twin.x1 -= 0.02 * double(size);  // one side too far in
+    lossy += !fit_of(node, twin).keeps;
   }
+  EXPECT_GT(loose, 20);
+  EXPECT_GT(lossy, 100);
 }
 
 // Off the paper's disk, T falls to 0 along a line; what is negligible there is not split without end.
@@ -111,6 +127,11 @@ TEST(PaperStatistics, PredictsTheTrials) {
       for (; !there(); ++trials) walk.advance(5);
     }
     EXPECT_NEAR(trials / n, s.trials, 0.03 * s.trials) << restart;
+    PaperOptions finer = options;  // the twin: another tree needs others
+    finer.n_max = 2;
+    const PaperSampler other(f, {}, wo, finer);
+    const double twin = paper_statistics(f, {}, other.trees(), finer).trials;
+    EXPECT_GT(std::abs(trials / n - twin), 0.03 * s.trials);
     EXPECT_LE(s.trials, options.n_max);
     EXPECT_EQ(s.bytes, sampler.bytes());
     EXPECT_EQ(s.unmet, 0U);

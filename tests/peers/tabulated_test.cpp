@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/peers/registry.hpp"
@@ -19,9 +20,27 @@ std::string measured(const char* name) {
   const char* folder = std::getenv("REFLECTREE_DATA");
   return folder ? std::string(folder) + "/rgl/" + name + "_rgb.bsdf" : "";
 }
-PeerSubject analytic(const char* text) {
+struct Made {
+  PeerSubject subject;
+  AnySampler<Spectrum> sampler;
+};
+// Tables take most of the time: each is made once.
+const Made& made(const std::string& name, const std::string& text) {
+  static std::map<std::string, Made> all;
+  const auto found = all.find(name + " " + text);
+  if (found != all.end()) return found->second;
   const Material material = parse_material(text);
-  return {make_brdf(material), material, {}};
+  const PeerSubject subject{make_brdf(material), material, {}};
+  auto sampler = find_sampler(name)->make(subject, {});
+  return all.emplace(name + " " + text, Made{subject, std::move(*sampler)}).first->second;
+}
+// So are the bins, which do not depend on the sampler.
+const Bins& bins_of(const std::string& name, const TargetFunction& f, Direction wo) {
+  static std::map<std::string, Bins> all;
+  const std::string key = name + " " + std::to_string(wo.z);
+  const auto found = all.find(key);
+  return found != all.end() ? found->second
+                            : all.emplace(key, equal_mass_bins(f, wo, {.count = 36})).first->second;
 }
 
 class Tabulated : public testing::TestWithParam<const char*> {};
@@ -37,17 +56,18 @@ ConsistencyOptions loose() {
 }
 
 void judge(const SamplerInfo& info, const AnySampler<Spectrum>& sampler, const PeerSubject& subject,
-           Direction wo, const std::string& where) {
+           Direction wo, const std::string& material) {
+  const std::string where = std::string(info.name) + " " + material + " at z " + std::to_string(wo.z);
   const ErasedSampler erased = erase(sampler);
   const TargetFunction f = target_function(subject.f);
-  const Bins bins = equal_mass_bins(f, wo, {.count = 36});
-  const ChiSquareOptions options{.samples = 100'000, .tests = 200};
+  const Bins& bins = bins_of(material, f, wo);
+  const ChiSquareOptions options{.samples = 80'000, .tests = 200};
   const Tally tally = tally_of(erased, bins, options);
   std::printf("%s: relVar %.4f, lost %.4f, %zu KiB\n", where.c_str(), relative_variance(tally),
               double(tally.none) / double(tally.samples), sampler.bytes() / 1024);
 
   // The directions are as the pdf says. Twin: one side gets 5 % more, the other 5 % less.
-  const auto density = density_masses(erased, bins, 5e-3);
+  const auto density = density_masses(erased, bins, 3e-3);
   const auto counts = check_counts(tally, density, options);
   EXPECT_TRUE(counts.passed) << where << " " << to_line(counts);
   const Tally twin = tally_of(bent(erased, 0, 0.05), bins, options);
@@ -63,30 +83,22 @@ void judge(const SamplerInfo& info, const AnySampler<Spectrum>& sampler, const P
   }
   EXPECT_FALSE(check_weights(twin, bins, options).passed) << where;
 
-  for (const CheckResult& result : check_consistency(erased, f, wo, loose())) {
+  // Twin: a pdf 5 % too large.
+  for (const CheckResult& result : check_consistency(erased, f, bins, density, loose())) {
     if (!info.unbiased && result.name == "support") continue;
     EXPECT_TRUE(result.passed) << where << " " << to_line(result);
   }
-}
-
-TEST_P(Tabulated, WrongPdfIsRejected) {
-  const PeerSubject subject = analytic("ggx:alpha=0.3");
-  const auto sampler = find_sampler(GetParam())->make(subject, {});
-  ASSERT_TRUE(sampler.has_value());
-  const ErasedSampler twin = scaled_pdf(erase(*sampler), 1.05f);
-  EXPECT_FALSE(all_passed(check_consistency(twin, target_function(subject.f), known(35), loose())));
+  std::vector<double> larger = density;
+  for (double& mass : larger) mass *= 1.05;
+  EXPECT_FALSE(all_passed(check_consistency(scaled_pdf(erased, 1.05f), f, bins, larger, loose()))) << where;
 }
 
 TEST_P(Tabulated, IsWhatItClaims) {
   const SamplerInfo& info = *find_sampler(GetParam());
-  for (const char* text : {"lambert", "ggx:alpha=0.3", "ggx:alpha=0.1", "plastic:alpha=0.1"}) {
-    const PeerSubject subject = analytic(text);
-    const auto sampler = info.make(subject, {});
-    ASSERT_TRUE(sampler.has_value());
-    for (const double deg : {35, 75}) {
-      judge(info, *sampler, subject, known(deg),
-            std::string(GetParam()) + " " + text + " at " + std::to_string(int(deg)));
-    }
+  for (const char* text : {"lambert", "ggx:alpha=0.1", "plastic:alpha=0.1"}) {
+    const auto& [subject, sampler] = made(GetParam(), text);
+    judge(info, sampler, subject, known(35), text);
+    if (text != std::string("lambert")) judge(info, sampler, subject, known(75), text);
   }
 }
 
@@ -97,7 +109,7 @@ TEST_P(Tabulated, IsWhatItClaimsOnMeasuredMaterials) {
     const PeerSubject subject{load_brdf(measured(name)), {}, {}};
     const auto sampler = info.make(subject, {});
     ASSERT_TRUE(sampler.has_value());
-    judge(info, *sampler, subject, known(45), std::string(GetParam()) + " " + name);
+    judge(info, *sampler, subject, known(45), name);
   }
 }
 
@@ -106,7 +118,7 @@ double lost_mass(const AnySampler<Spectrum>& sampler, const PeerSubject& subject
   const auto full = find_sampler("cosine")->make(subject, {});
   Pcg32 u(1);
   double all = 0, lost = 0;
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < 100'000; ++i) {
     const auto drawn = full->sample(wo, u);
     if (!drawn) continue;
     const double w = double(subject.target(drawn->weight));
@@ -117,15 +129,14 @@ double lost_mass(const AnySampler<Spectrum>& sampler, const PeerSubject& subject
 }
 
 // A pure mirror lobe is the hardest: most of the hemisphere is dark, and nothing returns to wo from below.
+// Those that are biased are the twin of those that are not.
 TEST_P(Tabulated, LosesSupportIfSaidToBeBiased) {
   const SamplerInfo& info = *find_sampler(GetParam());
   double worst = 0;
   for (const char* text : {"phong:kd=0", "ggx:alpha=0.1"}) {
-    const PeerSubject subject = analytic(text);
-    const auto sampler = info.make(subject, {});
-    ASSERT_TRUE(sampler.has_value());
+    const auto& [subject, sampler] = made(GetParam(), text);
     for (const double deg : {20, 45, 60, 80}) {
-      worst = std::max(worst, lost_mass(*sampler, subject, known(deg)));
+      worst = std::max(worst, lost_mass(sampler, subject, known(deg)));
     }
   }
   std::printf("%s: lost mass %.2g\n", GetParam(), worst);
@@ -137,29 +148,38 @@ INSTANTIATE_TEST_SUITE_P(All, Tabulated,
                          testing::Values("cdf-table", "alias-table", "factored", "adaptive-cdf", "wavelet",
                                          "warp-chain"));
 
+double deviation_of(const AnySampler<Spectrum>& sampler, const PeerSubject& subject, Direction wo) {
+  Pcg32 u(1);
+  double sum = 0, sum2 = 0;
+  constexpr int samples = 60'000;
+  for (int i = 0; i < samples; ++i) {
+    const auto drawn = sampler.sample(wo, u);
+    const double w = drawn ? double(subject.target(drawn->weight)) : 0;
+    sum += w, sum2 += w * w;
+  }
+  return std::sqrt(samples * sum2 / (sum * sum) - 1);
+}
+
 // The method's own sampling tables give .03 to .31 standard deviation over mean on its files; fitted from the
 // function alone it stays within that, but for the file whose function changes most between 75 and 85
-// degrees: there even 48 elevations leave .5.
+// degrees: there even 48 elevations leave .5. A fitted cos^n lobe is the
+// twin that does not.
 TEST(WarpChain, IsAsGoodAsPublishedOnItsOwnFiles) {
   if (measured("").empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
   for (const char* name : {"cardboard", "satin_purple", "chm_mint"}) {
     const PeerSubject subject{load_brdf(measured(name)), {}, {}};
     const auto sampler = find_sampler("warp-chain")->make(subject, {});
-    ASSERT_TRUE(sampler.has_value());
+    const auto twin = find_sampler("lafortune-willems")->make(subject, {});
+    ASSERT_TRUE(sampler.has_value() && twin.has_value());
+    double worst_of_twin = 0;
     for (const double deg : {0, 30, 60, 75, 85}) {
-      Pcg32 u(1);
-      double sum = 0, sum2 = 0;
-      constexpr int samples = 100'000;
-      for (int i = 0; i < samples; ++i) {
-        const auto drawn = sampler->sample(known(deg), u);
-        const double w = drawn ? double(subject.target(drawn->weight)) : 0;
-        sum += w, sum2 += w * w;
-      }
-      const double deviation = std::sqrt(samples * sum2 / (sum * sum) - 1);
+      const double deviation = deviation_of(*sampler, subject, known(deg));
       std::printf("warp-chain %s %2.0f deg: %.3f\n", name, deg, deviation);
       const bool hard = name == std::string("chm_mint") && deg > 70;
       EXPECT_LT(deviation, hard ? 0.6 : 0.31) << name << " " << deg;
+      worst_of_twin = std::max(worst_of_twin, deviation_of(*twin, subject, known(deg)));
     }
+    EXPECT_GT(worst_of_twin, 0.31) << name;
   }
 }
 

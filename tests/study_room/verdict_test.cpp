@@ -38,6 +38,7 @@ std::vector<MaterialResult> ten(double loss) {
     all.push_back({"m" + std::to_string(i),
                    {1},
                    {0},
+                   {},
                    {result("exact", 1, 30), result("one-shot", 1, 20), result("other", other, 20),
                     result("special", 0.01, 20)}});
   }
@@ -54,6 +55,7 @@ TEST_F(VerdictOf, HoldsWithOneLossInTen) {
   EXPECT_NEAR(v.losses[0].ratio, 1. / 3, 1e-9);
   EXPECT_NEAR(v.losses[0].error_ratio, 1. / 3, 1e-9);
   EXPECT_NEAR(v.losses[0].time_ratio, 1, 1e-9);
+  EXPECT_EQ(cause_of(v.losses[0]), "samples that vary less");
   EXPECT_NEAR(v.scores[0].relative_efficiency, 2. / 3, 1e-9);
 }
 
@@ -63,6 +65,37 @@ TEST_F(VerdictOf, FailsWithTwoLossesInTen) {
   std::vector<MaterialResult> all = ten(3);
   all[8].samplers[2].cells[0].error[0] = 0.5;
   EXPECT_FALSE(of(all).nine_in_ten);
+}
+
+// Letters that mean something in a drawing's labels do not in names; a loss leads to its material.
+TEST_F(VerdictOf, ThePageNamesItsMaterials) {
+  std::vector<MaterialResult> all = ten(3);
+  all[9].material = "rgl/chm_mint_rgb.bsdf";
+  const std::string page = study_html(all, of(all), lights, options, {"reflectree compare", "0", "m", "c"});
+  EXPECT_NE(page.find(">chm_mint<"), std::string::npos);
+  EXPECT_EQ(page.find("chm<tspan"), std::string::npos);
+  EXPECT_NE(page.find("<a href=\"#material-10\">chm_mint</a>"), std::string::npos);
+  EXPECT_NE(page.find("id=\"material-10\""), std::string::npos);
+}
+
+// Equal densities share a line of the key; curves keep no more points than they need.
+TEST_F(VerdictOf, SlicesAreDrawnWithFewPoints) {
+  MaterialResult m;
+  const auto angles = plane_angles(45);
+  std::vector<double> lobe;
+  for (const double a : angles) lobe.push_back(std::exp(-a * a / 800));
+  m.slices = {lobe};
+  SamplerResult same{"exact", "", 0, 0, {}, {}, {lobe}}, also{"one-shot", "", 0, 0, {}, {}, {lobe}};
+  SamplerResult broken{"other", "", 0, 0, {}, {}, {lobe}};
+  for (std::size_t i = 0; i < lobe.size(); ++i) {
+    if (angles[i] > 30) broken.slices[0][i] = 0;
+  }
+  m.samplers = {same, also, broken};
+  const draw::Figure f = slice_figure(m, options);
+  EXPECT_NE(f.body.find("exact, one-shot"), std::string::npos);
+  EXPECT_LT(f.body.size(), 8000U);
+  m.samplers = {same, broken, also};
+  EXPECT_EQ(slice_figure(m, options).body.find("other, "), std::string::npos);
 }
 
 TEST_F(VerdictOf, ThePageIsWholeAndOffline) {

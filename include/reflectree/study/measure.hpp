@@ -7,6 +7,7 @@
 
 #include "reflectree/peers/registry.hpp"
 #include "reflectree/study/environment.hpp"
+#include "reflectree/study/slices.hpp"
 
 namespace reflectree::study {
 
@@ -53,11 +54,14 @@ struct SamplerResult {
   double build_seconds = 0;        // thread CPU time, one thread
   std::vector<Cell> cells;         // a theta_o
   std::vector<ErrorCurve> curves;  // a light
+  // A theta_o: its density in the plane of incidence at plane_angles(); empty without a density.
+  std::vector<std::vector<double>> slices;
 };
 
 struct MaterialResult {
   std::string material;
   std::vector<double> albedo, albedo_error;  // a theta_o, of the target, by cubature
+  std::vector<std::vector<double>> slices;   // a theta_o: the target's own
   std::vector<SamplerResult> samplers;       // those that are for this material
 };
 

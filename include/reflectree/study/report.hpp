@@ -26,9 +26,13 @@ struct Bar {
   double value = 0;
   bool ours = false;
 };
-draw::Figure bar_figure(const std::string& title, const std::string& unit, std::span<const Bar> bars);
-// Samplers down, theta_o across; log colour of the relative RMSE^2 times time, over the best of its column.
-draw::Figure heat_figure(const MaterialResult& material, std::size_t light, const std::string& light_name,
+draw::Figure bar_figure(const std::string& title, const std::string& unit, std::span<const Bar> bars,
+                        bool largest_first = false);
+// Samplers down; across, theta_o averaged over lights, then lights averaged over theta_o, by geometric means;
+// the relative RMSE^2 times time, over the best of its column.
+draw::Figure heat_figure(const MaterialResult& material, std::span<const Environment> lights,
                          const StudyOptions& options);
+// In the plane of incidence, a panel a theta_o.
+draw::Figure slice_figure(const MaterialResult& material, const StudyOptions& options);
 
 }  // namespace reflectree::study

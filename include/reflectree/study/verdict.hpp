@@ -25,6 +25,9 @@ struct Loss {
   double error_ratio = 0, time_ratio = 0;
 };
 
+// In a few words: does the winner vary less, is it quicker, or both?
+std::string cause_of(const Loss& loss);
+
 struct Verdict {
   int materials = 0, won = 0;  // where ours and a general competitor were measured
   std::vector<Score> scores;   // as in the registry

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "reflectree/sampler/host.hpp"
@@ -33,5 +34,9 @@ struct ConsistencyOptions {
 std::vector<CheckResult> check_consistency(const ErasedSampler& sampler, const TargetFunction& f,
                                            Direction wo, const ConsistencyOptions& options = {},
                                            const Host& host = {});
+// The same where the bins of f and density_masses() in them are known.
+std::vector<CheckResult> check_consistency(const ErasedSampler& sampler, const TargetFunction& f,
+                                           const Bins& bins, std::span<const double> density,
+                                           const ConsistencyOptions& options = {});
 
 }  // namespace reflectree
