@@ -100,15 +100,44 @@ RglTable::RglTable(const RglFields& fields)
   }
 }
 
-Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
-  // The known direction: its pair of nodes and the weights of both.
+RglTable::Known RglTable::known(const ShadingGeometry<float>& g) const {
   const float theta_o = detail::polar_angle(sin2_theta(g.wo), g.cos_theta_o);
   unsigned inner_nodes_passed = 0;  // counted without a branch: random directions would mispredict it
   for (std::size_t i = 1; i + 1 < theta_o_.size(); ++i)
     inner_nodes_passed += theta_o >= theta_o_[i] ? 1U : 0U;
   const std::size_t pair = inner_nodes_passed;
   const float below = theta_o_[pair], above = theta_o_[pair + 1];
-  const float t1 = min(max(0.f, (theta_o - below) / (above - below)), 1.f), t0 = 1 - t1;
+  const float t1 = min(max(0.f, (theta_o - below) / (above - below)), 1.f);
+  return {pair, t1, 4.f * interpolate(sigma_, elevation_to_u(theta_o))};
+}
+
+Rgb RglTable::operator()(const ShadingGeometry<float>& g) const { return value(known(g), g); }
+
+void RglTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
+                    std::span<float> out) const {
+  std::vector<ShadingGeometry<float>> geometry;
+  for (std::size_t i = 0; i < wo.size(); ++i) geometry.push_back(shading_geometry(wo[i], wi[i]));
+  eval(geometry, out);
+}
+
+void RglTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const {
+  Known of_wo{};
+  for (std::size_t i = 0; i < geometry.size(); ++i) {
+    const ShadingGeometry<float>& g = geometry[i];
+    Rgb v;
+    if (g.cos_theta_o > 0 && g.cos_theta_i > 0) {
+      const bool same = i > 0 && geometry[i - 1].cos_theta_o == g.cos_theta_o &&
+                        geometry[i - 1].wo.x == g.wo.x && geometry[i - 1].wo.y == g.wo.y;
+      if (!same) of_wo = known(g);
+      v = value(of_wo, g);
+    }
+    out[3 * i] = v.r, out[3 * i + 1] = v.g, out[3 * i + 2] = v.b;
+  }
+}
+
+Rgb RglTable::value(const Known& of_wo, const ShadingGeometry<float>& g) const {
+  const auto [pair, t1, four_sigma] = of_wo;
+  const float t0 = 1 - t1;
 
   // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
   const bool normal = g.wo.x == 0 && g.wo.y == 0;
@@ -142,8 +171,7 @@ Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
                           (pair * std::size_t(colour_height_) + std::size_t(qy.node)) * colour_stride +
                           std::size_t(qx.node);
   const float a1 = qx.fraction, a0 = 1 - a1, b1 = qy.fraction, b0 = 1 - b1;
-  const float scale =
-      interpolate(ndf_, u) / (4.f * interpolate(sigma_, elevation_to_u(theta_o)) * max(1e-6f, g.cos_theta_i));
+  const float scale = interpolate(ndf_, u) / (four_sigma * max(1e-6f, g.cos_theta_i));
   float out[4] = {0, 0, 0, 0};
   const auto add = [&out](const ColourNode& n, float w0, float w1) {
     for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];

@@ -14,8 +14,13 @@ namespace reflectree {
 float albedo_at(const AlbedoTable& table, float c) {
   const auto& x = table.cos_theta_o;
   if (x.empty() || !(c >= x.front()) || c > x.back()) return 0;
-  const auto upper = std::upper_bound(x.begin() + 1, x.end() - 1, c) - x.begin();
-  const auto i = std::size_t(upper - 1);
+  // The last entry up to c, by halving without a branch: random cosines would mispredict it.
+  std::size_t i = 0;
+  for (std::size_t count = x.size() - 1; count > 1;) {
+    const std::size_t half = count / 2;
+    i += x[i + half] <= c ? half : 0;
+    count -= half;
+  }
   const float t = (c - x[i]) / (x[i + 1] - x[i]);
   return lerp(t, table.albedo[i], table.albedo[i + 1]);
 }
@@ -266,10 +271,10 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
                interpolation_error = 0.15 * double(relative_error);
   // Panels of at most 7.5 degrees, and octaves towards the horizon.
   std::vector<double> borders;
-  for (int i = 0; i < 12; ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);
   // Where a mirror lobe passes the kinks of a table over the difference angle, a panel begins at every second
   // kink: the one between is met by the middle node, and the parabola shows what it weighs.
-  const std::vector<float>& kinks = field.f.traits().theta_d_knots;
+  const std::vector<float> kinks = field.f.traits().theta_d_knots;
+  for (int i = 0; i < 12 && (i == 0 || kinks.empty()); ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);
   for (std::size_t i = 0; i < kinks.size(); i += 2) borders.push_back(double(kinks[i]));
   for (const double near : {0.5, 1.5, 3.75})
     borders.push_back(near * pi_v<double> / 180);  // kinks of tables crowd

@@ -36,38 +36,31 @@ constexpr std::size_t block = 512;  // points evaluated by one call
 
 void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
   const int channels = f.channels();
-  std::vector<ShadingGeometry<float>> geometry;
-  std::vector<float> values, area;
-  std::vector<std::size_t> index;
+  const std::size_t images = both_sides ? 2 : 1;
+  std::vector<ShadingGeometry<float>> geometry(block * images);
+  std::vector<float> values(geometry.size() * std::size_t(channels)), area(block);
   for (std::size_t begin = 0; begin < points.size(); begin += block) {
     const std::size_t end = std::min(points.size(), begin + block);
-    geometry.clear(), area.clear(), index.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      const DomainPoint q = lift(domain, wo_from_cosine(points[i].cos_theta_o), points[i].p);
-      out[i] = {0, 0};
-      geometry.push_back(q.geometry), area.push_back(q.projected_area), index.push_back(i);
-      if (both_sides) {
-        ShadingGeometry<float> mirrored = q.geometry;
-        mirrored.wi.y = -mirrored.wi.y, mirrored.wh.y = -mirrored.wh.y;
-        geometry.push_back(mirrored);
-      }
+    const std::size_t count = end - begin;
+    for (std::size_t k = 0; k < count; ++k) {
+      const FieldPoint& point = points[begin + k];
+      const DomainPoint q = lift(domain, wo_from_cosine(point.cos_theta_o), point.p);
+      geometry[k * images] = q.geometry, area[k] = q.projected_area;
+      if (!both_sides) continue;
+      ShadingGeometry<float>& mirrored = geometry[k * images + 1] = q.geometry;
+      mirrored.wi.y = -mirrored.wi.y, mirrored.wh.y = -mirrored.wh.y;
     }
-    values.resize(geometry.size() * std::size_t(channels));
-    f.eval(geometry, values);
+    f.eval({geometry.data(), count * images}, {values.data(), count * images * std::size_t(channels)});
     const auto target_of = [&](std::size_t k) {
       const std::span<const float> value(values.data() + k * std::size_t(channels), std::size_t(channels));
       const float t = target(value.data(), channels);
       check(t, value, geometry[k], f);
       return t;
     };
-    for (std::size_t k = 0; k < index.size(); ++k) {
-      if (both_sides) {
-        const float a = target_of(2 * k) * area[k], b = target_of(2 * k + 1) * area[k];
-        out[index[k]] = {0.5f * (a + b), max(a, b)};
-      } else {
-        const float t = target_of(k) * area[k];
-        out[index[k]] = {t, t};
-      }
+    for (std::size_t k = 0; k < count; ++k) {
+      const float a = target_of(k * images) * area[k];
+      const float b = both_sides ? target_of(k * images + 1) * area[k] : a;
+      out[begin + k] = {0.5f * (a + b), max(a, b)};
     }
   }
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ class RglTable {
   explicit RglTable(const RglFields& fields);
 
   Rgb operator()(const ShadingGeometry<float>& g) const;
+  // Batches, three channels a pair, zero below the surface: pairs in a row that share wo share its look-up.
+  void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<float> out) const;
+  void eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const;
   BrdfTraits traits() const;
 
   std::string name;
@@ -42,6 +46,14 @@ class RglTable {
   std::uint64_t clamped = 0;
 
  private:
+  // What depends on wo alone: its pair of nodes, the weight of the upper one, and 4 sigma.
+  struct Known {
+    std::size_t pair;
+    float t1, four_sigma;
+  };
+  Known known(const ShadingGeometry<float>& g) const;
+  Rgb value(const Known& known, const ShadingGeometry<float>& g) const;
+
   // Nodes of two neighbouring theta_o lie side by side, so that a look-up touches two cache lines.
   struct WarpNode {
     float cdf[2], pdf[2];  // integral along u up to the node; density at the node
