@@ -16,9 +16,11 @@ struct Sampled final : Scattering {
   float pdf(Direction wo, Direction wi, Uv) const override {
     return wo.z > 0 && wi.z > 0 ? sampler.pdf(wo, wi) : 0;
   }
-  std::optional<Scattered> sample(Direction wo, Uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
-    const auto drawn = sampler.sample(wo, u);
+    UniformBits bits = u.lend();
+    const auto drawn = sampler.sample(wo, bits);
+    u.take_back(bits);
     if (!drawn) return std::nullopt;
     return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
   }
@@ -36,7 +38,7 @@ struct TwoSided final : Scattering {
   float pdf(Direction wo, Direction wi, Uv uv) const override {
     return wo.z > 0 ? front->pdf(wo, wi, uv) : back->pdf(flipped(wo), flipped(wi), uv);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (wo.z > 0) return front->sample(wo, uv, u);
     auto drawn = back->sample(flipped(wo), uv, u);
     if (drawn) drawn->wi = flipped(drawn->wi);
@@ -60,7 +62,7 @@ struct Blend final : Scattering {
     return (1 - w) * a->pdf(wo, wi, uv) + w * b->pdf(wo, wi, uv);
   }
   // One part is drawn by its share; where both have densities, its direction is weighed by the sum of both.
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const float w = share(uv);
     auto drawn = to_unit_float(u()) < w ? b->sample(wo, uv, u) : a->sample(wo, uv, u);
     if (!drawn || drawn->delta || !has_pdf()) return drawn;

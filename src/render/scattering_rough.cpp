@@ -28,7 +28,7 @@ struct RoughConductor final : Scattering {
     const Direction wh = normalize(wo + wi);
     return normals.pdf(wo, wh) / (4 * dot(wo, wh));
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wh = normals.sample(wo, u), wi = reflect(wo, wh);
     const float density = pdf(wo, wi, uv);
@@ -79,7 +79,7 @@ struct RoughPlastic final : Scattering {
     const float specular = chance(wo);
     return specular * normals.pdf(wo, wh) / (4 * dot(wo, wh)) + (1 - specular) * cosine_pdf(wi);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wi =
         to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u)) : cosine_direction(u);

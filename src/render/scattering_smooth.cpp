@@ -19,7 +19,7 @@ struct Diffuse final : Scattering {
     return wo.z > 0 && wi.z > 0 ? (wi.z / reflectree::pi) * eval(reflectance, uv) : Rgb{};
   }
   float pdf(Direction wo, Direction wi, Uv) const override { return wo.z > 0 ? cosine_pdf(wi) : 0; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wi = cosine_direction(u);
     return Scattered{wi, cosine_pdf(wi), eval(reflectance, uv)};
@@ -32,7 +32,7 @@ struct Conductor final : Scattering {
   Conductor(Rgb e, Rgb absorption, Texture t) : eta(e), k(absorption), specular(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32&) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits&) const override {
     if (!(wo.z > 0)) return std::nullopt;
     return Scattered{mirrored(wo), 0, eval(specular, uv) * fresnel_conductor(wo.z, eta, k), true};
   }
@@ -58,7 +58,7 @@ struct SmoothPlastic final : Scattering {
     if (!(wo.z > 0 && wi.z > 0)) return 0;
     return (1 - chance(fresnel(wo.z, p.eta).reflectance)) * cosine_pdf(wi);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float reflectance = fresnel(wo.z, p.eta).reflectance, specular = chance(reflectance);
     if (to_unit_float(u()) < specular) {
@@ -79,7 +79,7 @@ struct Glass final : Scattering {
   Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const Dielectric f = fresnel(wo.z, eta);
     if (to_unit_float(u()) < f.reflectance) return Scattered{mirrored(wo), 0, eval(reflectance, uv), true};
     const Direction wi{-wo.x / f.eta, -wo.y / f.eta, f.cos_theta_t};

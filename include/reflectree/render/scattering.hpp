@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "reflectree/brdf/any_brdf.hpp"
-#include "reflectree/math/random.hpp"
+#include "reflectree/render/path_bits.hpp"
 #include "reflectree/render/texture.hpp"
 #include "reflectree/sampler/any_sampler.hpp"
 
@@ -28,7 +28,7 @@ class Scattering {
   virtual Rgb f_cos(Direction wo, Direction wi, Uv uv) const = 0;
   // Density of `sample`, without deltas.
   virtual float pdf(Direction wo, Direction wi, Uv uv) const = 0;
-  virtual std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const = 0;
+  virtual std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const = 0;
   // False for a method without a density: lights are left to its own directions.
   virtual bool has_pdf() const { return true; }
 };

@@ -66,6 +66,12 @@ struct Filter {
   float width = .5f;  // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
 };
 
+// How light is to be computed.
+struct Transport {
+  enum class Method { path, direct, recursive, photons } method = Method::path;
+  int split = 0;  // directions at a hit, photons' gathering and direct light included; 0: the method's own
+};
+
 struct Scene {
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
@@ -78,6 +84,8 @@ struct Scene {
   Camera camera;
   Filter filter;
   int width = 0, height = 0, samples = 16;
+  PointSet points;
+  Transport transport;
   int max_depth = 8;  // path edges, as in Mitsuba; -1: no limit
   int rr_depth = 5;
 };
@@ -86,6 +94,10 @@ struct SceneOptions {
   std::map<std::string, std::string> defines;  // $name
   std::string sampler = "one-shot";            // of reflectree::samplers(): "reflectree" and "measured"
 };
+
+// Their names, in scenes and on the command line; "ldsampler", Mitsuba's word, is sobol.
+std::optional<Transport::Method> method_of(std::string_view name);
+std::optional<PointSet::Kind> points_of(std::string_view name);
 
 // Throws Error, naming line and column.
 Scene load_scene(const std::string& path, const SceneOptions& options = {}, const Host& host = {});
