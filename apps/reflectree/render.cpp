@@ -93,7 +93,7 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->check(CLI::IsMember({"independent", "stratified", "sobol"}).description(""))
       ->type_name("NAME");
   command->add_option("--split", o->split, "Directions at a hit: recursive, photons, direct")
-      ->check(CLI::Range(1, 256).description(""))
+      ->check(CLI::Range(1, 64).description(""))
       ->type_name("N");
   command->callback([&context, &run, o] { run = [&context, o] { return run_render(context, *o); }; });
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any function with any sampler; and materials made of others.
+#include <array>
+
 #include "reflectree/render/scattering.hpp"
 
 namespace reflectree::render {
@@ -24,6 +26,16 @@ struct Sampled final : Scattering {
     if (!drawn) return std::nullopt;
     return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
   }
+  std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
+    if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, uv, u, out);
+    if (!(wo.z > 0)) return 0;
+    std::array<DirectionSample<Spectrum>, max_split> drawn;
+    UniformBits bits = u[0].lend();
+    const std::size_t filled = sampler.sample_n(wo, bits, std::span(drawn).first(u.size()));
+    u[0].take_back(bits);
+    for (std::size_t i = 0; i < filled; ++i) out[i] = {drawn[i].wi, drawn[i].pdf, to_rgb(drawn[i].weight)};
+    return filled;
+  }
   bool has_pdf() const override { return sampler.has_pdf(); }
 };
 
@@ -44,6 +56,13 @@ struct TwoSided final : Scattering {
     if (drawn) drawn->wi = flipped(drawn->wi);
     return drawn;
   }
+  std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
+    if (wo.z > 0) return front->sample_n(wo, uv, u, out);
+    const std::size_t filled = back->sample_n(flipped(wo), uv, u, out);
+    for (Scattered& s : out.first(filled)) s.wi = flipped(s.wi);
+    return filled;
+  }
+  bool only_delta() const override { return front->only_delta() && back->only_delta(); }
   bool has_pdf() const override { return front->has_pdf() && back->has_pdf(); }
 };
 
@@ -71,10 +90,21 @@ struct Blend final : Scattering {
     drawn->weight = (1 / drawn->pdf) * f_cos(wo, drawn->wi, uv);
     return drawn;
   }
+  bool only_delta() const override { return a->only_delta() && b->only_delta(); }
   bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
 };
 
 }  // namespace
+
+std::size_t Scattering::sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const {
+  std::size_t filled = 0;
+  for (const PathBits& own : u) {
+    PathBits bits = own;
+    const auto drawn = sample(wo, uv, bits);
+    if (drawn) out[filled] = *drawn, u[filled++] = bits;
+  }
+  return filled;
+}
 
 ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler) {
   return std::make_shared<Sampled>(std::move(f), std::move(sampler));

@@ -31,6 +31,7 @@ struct Conductor final : Scattering {
   Texture specular;
   Conductor(Rgb e, Rgb absorption, Texture t) : eta(e), k(absorption), specular(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
+  bool only_delta() const override { return true; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits&) const override {
     if (!(wo.z > 0)) return std::nullopt;
@@ -78,6 +79,7 @@ struct Glass final : Scattering {
   Texture reflectance, transmittance;
   Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
+  bool only_delta() const override { return true; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const Dielectric f = fresnel(wo.z, eta);

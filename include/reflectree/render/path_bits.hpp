@@ -22,7 +22,7 @@ enum class Decision : std::uint32_t { light, surface, survival, count };
 
 class PathBits {
  public:
-  explicit PathBits(Pcg32 rest) : rest_(rest) {}
+  explicit PathBits(Pcg32 rest = Pcg32()) : rest_(rest) {}
   // Begins with the pixel's own block: two words for the film, two for a lens.
   PathBits(PointSet set, std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample);
 

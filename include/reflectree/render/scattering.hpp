@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/render/path_bits.hpp"
@@ -13,10 +14,12 @@
 
 namespace reflectree::render {
 
+inline constexpr std::size_t max_split = 64;  // of directions drawn at once
+
 struct Scattered {
-  Direction wi;
-  float pdf;   // per solid angle; 0 for a delta: nothing competes with it
-  Rgb weight;  // f |cos| / pdf
+  Direction wi{};
+  float pdf = 0;  // per solid angle; 0 for a delta: nothing competes with it
+  Rgb weight{};   // f |cos| / pdf
   bool delta = false;
 };
 
@@ -29,6 +32,11 @@ class Scattering {
   // Density of `sample`, without deltas.
   virtual float pdf(Direction wo, Direction wi, Uv uv) const = 0;
   virtual std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const = 0;
+  // One direction for each of `u`, whose bits stand at its decision; returns how many were filled, with their
+  // bits moved to the front. A mean over the directions is a sum over those filled divided by u.size().
+  virtual std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const;
+  // Nothing but deltas.
+  virtual bool only_delta() const { return false; }
   // False for a method without a density: lights are left to its own directions.
   virtual bool has_pdf() const { return true; }
 };
