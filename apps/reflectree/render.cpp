@@ -16,7 +16,9 @@ struct Options {
   render::SceneOptions reading;
   render::RenderOptions how;
   std::string technique = "balance", integrator, points;
-  int split = 0;
+  int split = 0, photons = 0;
+  float radius = 0, alpha = 0;
+  bool no_gather = false;
   bool resume = false;
 };
 
@@ -40,6 +42,10 @@ int run_render(const Context& context, Options& o) {
   if (!o.integrator.empty()) scene.transport.method = *render::method_of(o.integrator);
   if (!o.points.empty()) scene.points.kind = *render::points_of(o.points);
   if (o.split > 0) scene.transport.split = o.split;
+  if (o.photons > 0) scene.transport.photons.count = o.photons;
+  if (o.radius > 0) scene.transport.photons.radius = o.radius;
+  if (o.alpha > 0) scene.transport.photons.shrink = o.alpha;
+  if (o.no_gather) scene.transport.photons.gather = false;
   const std::string sums = o.output + ".sums";
   render::Film film;
   if (o.resume) film = render::load_film(sums);
@@ -95,6 +101,16 @@ void add_render(CLI::App& app, Context& context, Run& run) {
   command->add_option("--split", o->split, "Directions at a hit: recursive, photons, direct")
       ->check(CLI::Range(1, 64).description(""))
       ->type_name("N");
+  command->add_option("--photons", o->photons, "Light paths a pass; else as many as pixels")
+      ->check(CLI::Range(1, 1 << 30).description(""))
+      ->type_name("N");
+  command->add_option("--radius", o->radius, "Photons' radius in the first pass; else four pixels")
+      ->check(CLI::Range(1e-9, 1e9).description(""))
+      ->type_name("LENGTH");
+  command->add_option("--alpha", o->alpha, "How the radius shrinks, in (0, 1]; 1: it stays; else 2/3")
+      ->check(CLI::Range(1e-3, 1.).description(""))
+      ->type_name("X");
+  command->add_flag("--no-gather", o->no_gather, "Look photons up where the camera's path ends");
   command->callback([&context, &run, o] { run = [&context, o] { return run_render(context, *o); }; });
 }
 

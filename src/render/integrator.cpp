@@ -5,6 +5,7 @@
 
 #include "reflectree/error.hpp"
 #include "reflectree/render/path_tracer.hpp"
+#include "reflectree/render/photon_mapper.hpp"
 #include "reflectree/render/recursive_tracer.hpp"
 #include "reflectree/render/resampled_direct.hpp"
 
@@ -24,6 +25,9 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, Technique techni
     case Transport::Method::recursive:
       return std::make_unique<RecursiveTracer>(scene, technique, split(16), scene.max_depth);
     case Transport::Method::photons:
+      if (technique != Technique::balance && technique != Technique::power)
+        throw Error("photons are for indirect light", "--technique", "choose balance or power");
+      return std::make_unique<PhotonMapper>(scene, technique);
     case Transport::Method::path:
       break;
   }

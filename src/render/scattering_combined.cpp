@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any function with any sampler; and materials made of others.
 #include <array>
+#include <cmath>
 
+#include "cosine_lobe.hpp"
 #include "reflectree/render/scattering.hpp"
 
 namespace reflectree::render {
@@ -11,7 +13,9 @@ namespace {
 struct Sampled final : Scattering {
   AnyBrdf f;
   AnySampler<Spectrum> sampler;
-  Sampled(AnyBrdf function, AnySampler<Spectrum> s) : f(std::move(function)), sampler(std::move(s)) {}
+  std::optional<AnySampler<Spectrum>> adjoint;
+  Sampled(AnyBrdf function, AnySampler<Spectrum> s, std::optional<AnySampler<Spectrum>> light_side)
+      : f(std::move(function)), sampler(std::move(s)), adjoint(std::move(light_side)) {}
   Rgb f_cos(Direction wo, Direction wi, Uv) const override {
     return wo.z > 0 && wi.z > 0 ? wi.z * to_rgb(eval(f, wo, wi)) : Rgb{};
   }
@@ -36,8 +40,36 @@ struct Sampled final : Scattering {
     for (std::size_t i = 0; i < filled; ++i) out[i] = {drawn[i].wi, drawn[i].pdf, to_rgb(drawn[i].weight)};
     return filled;
   }
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    if (!(wi.z > 0)) return std::nullopt;
+    if (adjoint) {
+      UniformBits bits = u.lend();
+      const auto drawn = adjoint->sample(wi, bits);
+      u.take_back(bits);
+      if (!drawn) return std::nullopt;
+      return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
+    }
+    const float cosine = sampler.has_pdf() ? .1f : 1;
+    Direction wo;
+    if (to_unit_float(u()) < cosine) {
+      wo = cosine_direction(u);
+    } else {
+      UniformBits bits = u.lend();
+      const auto drawn = sampler.sample(wi, bits);
+      u.take_back(bits);
+      if (!drawn) return std::nullopt;
+      wo = drawn->wi;
+    }
+    const float density = cosine * cosine_pdf(wo) + (1 - cosine) * pdf(wi, wo, uv);
+    if (!(density > 0)) return std::nullopt;
+    return Scattered{wo, density, (wo.z / density) * to_rgb(eval(f, wo, wi))};
+  }
   bool has_pdf() const override { return sampler.has_pdf(); }
 };
+
+Lobes both(const Scattering& a, const Scattering& b) {
+  return a.lobes() == b.lobes() ? a.lobes() : Lobes::both;
+}
 
 constexpr Direction flipped(Direction w) { return {w.x, w.y, -w.z}; }
 
@@ -62,7 +94,13 @@ struct TwoSided final : Scattering {
     for (Scattered& s : out.first(filled)) s.wi = flipped(s.wi);
     return filled;
   }
-  bool only_delta() const override { return front->only_delta() && back->only_delta(); }
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    if (wi.z > 0) return front->sample_adjoint(wi, uv, u);
+    auto drawn = back->sample_adjoint(flipped(wi), uv, u);
+    if (drawn) drawn->wi = flipped(drawn->wi);
+    return drawn;
+  }
+  Lobes lobes() const override { return both(*front, *back); }
   bool has_pdf() const override { return front->has_pdf() && back->has_pdf(); }
 };
 
@@ -90,7 +128,10 @@ struct Blend final : Scattering {
     drawn->weight = (1 / drawn->pdf) * f_cos(wo, drawn->wi, uv);
     return drawn;
   }
-  bool only_delta() const override { return a->only_delta() && b->only_delta(); }
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    return to_unit_float(u()) < share(uv) ? b->sample_adjoint(wi, uv, u) : a->sample_adjoint(wi, uv, u);
+  }
+  Lobes lobes() const override { return both(*a, *b); }
   bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
 };
 
@@ -106,8 +147,16 @@ std::size_t Scattering::sample_n(Direction wo, Uv uv, std::span<PathBits> u, std
   return filled;
 }
 
-ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler) {
-  return std::make_shared<Sampled>(std::move(f), std::move(sampler));
+std::optional<Scattered> Scattering::sample_adjoint(Direction wi, Uv uv, PathBits& u) const {
+  auto drawn = sample(wi, uv, u);
+  if (!drawn || drawn->delta) return drawn;  // mirrors are reciprocal
+  const Direction wo = drawn->wi;
+  drawn->weight = std::abs(wo.z / wi.z) / drawn->pdf * f_cos(wo, wi, uv);
+  return drawn;
+}
+
+ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler, std::optional<AnySampler<Spectrum>> adjoint) {
+  return std::make_shared<Sampled>(std::move(f), std::move(sampler), std::move(adjoint));
 }
 ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back) {
   return std::make_shared<TwoSided>(std::move(front), std::move(back));

@@ -31,7 +31,7 @@ struct Conductor final : Scattering {
   Texture specular;
   Conductor(Rgb e, Rgb absorption, Texture t) : eta(e), k(absorption), specular(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
-  bool only_delta() const override { return true; }
+  Lobes lobes() const override { return Lobes::delta; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits&) const override {
     if (!(wo.z > 0)) return std::nullopt;
@@ -50,6 +50,7 @@ struct SmoothPlastic final : Scattering {
     const float s = reflectance * specular_weight, d = (1 - reflectance) * (1 - specular_weight);
     return s + d > 0 ? s / (s + d) : 1;
   }
+  Lobes lobes() const override { return Lobes::both; }
   Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
     if (!(wo.z > 0 && wi.z > 0)) return {};
     const float t = (1 - fresnel(wo.z, p.eta).reflectance) * (1 - fresnel(wi.z, p.eta).reflectance);
@@ -79,13 +80,19 @@ struct Glass final : Scattering {
   Texture reflectance, transmittance;
   Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
-  bool only_delta() const override { return true; }
+  Lobes lobes() const override { return Lobes::delta; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const Dielectric f = fresnel(wo.z, eta);
-    if (to_unit_float(u()) < f.reflectance) return Scattered{mirrored(wo), 0, eval(reflectance, uv), true};
-    const Direction wi{-wo.x / f.eta, -wo.y / f.eta, f.cos_theta_t};
-    return Scattered{wi, 0, (1 / (f.eta * f.eta)) * eval(transmittance, uv), true};
+    return scatter(wo, uv, f, 1 / (f.eta * f.eta), u);
+  }
+  // Power is not squeezed.
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    return scatter(wi, uv, fresnel(wi.z, eta), 1, u);
+  }
+  Scattered scatter(Direction w, Uv uv, const Dielectric& f, float squeeze, PathBits& u) const {
+    if (to_unit_float(u()) < f.reflectance) return {mirrored(w), 0, eval(reflectance, uv), true};
+    return {{-w.x / f.eta, -w.y / f.eta, f.cos_theta_t}, 0, squeeze * eval(transmittance, uv), true};
   }
 };
 

@@ -44,7 +44,17 @@ class SceneReader {
       t.split = int(xml_.property(n, "shading_samples", 0));
       return;
     }
-    xml_.only(n, {"max_depth", "rr_depth", "split"});
+    if (t.method == Transport::Method::photons) {
+      xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather"});
+      t.photons.count = int(xml_.property(n, "photon_count", 0));
+      t.photons.radius = float(xml_.property(n, "radius", 0));
+      t.photons.shrink = float(xml_.property(n, "alpha", 2 / 3.));
+      t.photons.gather = xml_.flag(n, "final_gather", true);
+    } else if (t.method == Transport::Method::path) {
+      xml_.only(n, {"max_depth", "rr_depth"});
+    } else {
+      xml_.only(n, {"max_depth", "rr_depth", "split"});
+    }
     t.split = int(xml_.property(n, "split", 0));
     scene_.max_depth = int(xml_.property(n, "max_depth", -1));
     scene_.rr_depth = int(xml_.property(n, "rr_depth", 5));

@@ -23,6 +23,9 @@ struct Scattered {
   bool delta = false;
 };
 
+// What a function is made of.
+enum class Lobes : std::uint8_t { finite, delta, both };
+
 // Directions are local to the shading frame; wo.z < 0 is the back.
 class Scattering {
  public:
@@ -35,8 +38,12 @@ class Scattering {
   // One direction for each of `u`, whose bits stand at its decision; returns how many were filled, with their
   // bits moved to the front. A mean over the directions is a sum over those filled divided by u.size().
   virtual std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const;
-  // Nothing but deltas.
-  virtual bool only_delta() const { return false; }
+  // For light that is known to come from `wi`: a direction wo in which it goes on, in the sample's `wi`, with
+  // weight f(wo, wi) |cos_theta_o| / pdf: the adjoint f*(wo, wi) = f(wi, wo) (Veach 1997, 3.7.5), since
+  // functions are not reciprocal. By default drawn as `sample` would, were wi the viewer's direction.
+  virtual std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const;
+  virtual Lobes lobes() const { return Lobes::finite; }
+  bool only_delta() const { return lobes() == Lobes::delta; }
   // False for a method without a density: lights are left to its own directions.
   virtual bool has_pdf() const { return true; }
 };
@@ -62,7 +69,10 @@ ScatteringPtr plastic(Plastic parameters);
 ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness);
 ScatteringPtr dielectric(float eta, Texture reflectance, Texture transmittance);
 // A function above the surface with a sampler of it, ours or any other.
-ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler);
+// Light's side is drawn by `adjoint`, a sampler of the swapped function; without one, by `sampler` and a
+// tenth of a cosine lobe, which reaches what the ordinary sampler may miss.
+ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler,
+                      std::optional<AnySampler<Spectrum>> adjoint = std::nullopt);
 ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back);
 // (1 - weight) a + weight b.
 ScatteringPtr blend(Texture weight, ScatteringPtr a, ScatteringPtr b);

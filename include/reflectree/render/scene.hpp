@@ -70,6 +70,12 @@ struct Filter {
 struct Transport {
   enum class Method { path, direct, recursive, photons } method = Method::path;
   int split = 0;  // directions at a hit, photons' gathering and direct light included; 0: the method's own
+  struct Photons {
+    int count = 0;           // of light paths a pass; 0: as many as pixels
+    float radius = 0;        // within which the first pass looks for photons; 0: a few pixels wide
+    float shrink = 2 / 3.f;  // alpha of the progressive radius; 1: it stays
+    bool gather = true;      // final gathering: indirect light is looked up one bounce away
+  } photons;
 };
 
 struct Scene {
