@@ -81,8 +81,9 @@ struct RoughPlastic final : Scattering {
   }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
+    const float u1 = to_unit_float(u()), u2 = to_unit_float(u());  // first, for points that are a net in two
     const Direction wi =
-        to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u)) : cosine_direction(u);
+        to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u1, u2)) : cosine_direction(u1, u2);
     const float density = pdf(wo, wi, uv);
     if (!(density > 0)) return std::nullopt;
     return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};

@@ -63,10 +63,11 @@ struct SmoothPlastic final : Scattering {
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float reflectance = fresnel(wo.z, p.eta).reflectance, specular = chance(reflectance);
+    const float u1 = to_unit_float(u()), u2 = to_unit_float(u());
     if (to_unit_float(u()) < specular) {
       return Scattered{mirrored(wo), 0, (reflectance / specular) * eval(p.specular, uv), true};
     }
-    const Direction wi = cosine_direction(u);
+    const Direction wi = cosine_direction(u1, u2);
     const float density = (1 - specular) * cosine_pdf(wi);
     if (!(density > 0)) return std::nullopt;
     return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};

@@ -23,15 +23,15 @@ class PhotonMap {
   PhotonMap(std::vector<Photon> photons, float radius);
 
   std::size_t size() const { return photons_.size(); }
-  // Calls visit(photon, squared distance / radius^2) for each within the radius.
-  template <class Visit>
-  void near(Point at, const Visit& visit) const;
-
   // Radiance that `at` reflects, from photons whose paths have `fewest` to `most` edges: their f times their
   // power, by the kernel 2 / (pi r^2) (1 - d^2 / r^2) of the disk (Silverman 1986, 4.2).
   Rgb reflected(const PathVertex& at, int fewest, int most) const;
 
  private:
+  // Calls visit(photon, squared distance / radius^2) for each within the radius.
+  template <class Visit>
+  void near(Point at, const Visit& visit) const;
+
   struct Cell {
     std::int32_t x, y, z;
     friend bool operator==(const Cell&, const Cell&) = default;
