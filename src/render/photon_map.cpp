@@ -52,16 +52,12 @@ void PhotonMap::near(Point at, const Visit& visit) const {
   }
 }
 
-// Power a area comes from radiance by the cosine about the true normal; what is reflected takes the cosine
-// about the shading normal, which f_cos holds.
 Rgb PhotonMap::reflected(const PathVertex& at, int fewest, int most) const {
   Rgb sum;
   near(at.on.at, [&](const Photon& p, float share) {
     if (p.edges < fewest || p.edges > most) return;
-    const float cosine = std::abs(dot(at.on.normal, p.wi));
-    if (!(cosine > 1e-5f)) return;
     const Rgb f_cos = at.scattering().f_cos(at.wo, to_local(at.frame, p.wi), at.on.uv);
-    sum = sum + ((1 - share) / cosine) * (f_cos * p.power);
+    sum = sum + (1 - share) * (f_cos * p.etendue);
   });
   return (2 / (pi * radius_ * radius_)) * sum;
 }

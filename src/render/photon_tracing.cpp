@@ -30,8 +30,9 @@ void trace(const World& world, const Emission& emission, float share, PathBits& 
     if (!hit) return;
     const PathVertex at(world.scene, *hit, origin, direction);
     const Scattering& scattering = at.scattering();
-    if (!scattering.only_delta())
-      out.push_back({at.on.at, -direction, power, std::uint16_t(edges), edges > 1 && deltas});
+    const float cosine = std::abs(dot(at.on.normal, direction));
+    if (!scattering.only_delta() && cosine > 1e-6f)
+      out.push_back({at.on.at, -direction, (1 / cosine) * power, std::uint16_t(edges), edges > 1 && deltas});
     u.begin(edges, Decision::surface);
     const auto next = scattering.sample_adjoint(at.wo, at.on.uv, u);
     if (!next) return;
@@ -39,7 +40,7 @@ void trace(const World& world, const Emission& emission, float share, PathBits& 
     // Where shading and true normals differ, |cos_s wi cos_g wo / (cos_g wi cos_s wo)| keeps to what a path
     // from the camera finds (Veach 1997, 5.3.2); here at.wo is where light comes from.
     const float turned = std::abs(at.wo.z * dot(at.on.normal, direction)),
-                over = std::abs(next->wi.z * dot(at.on.normal, to_world(at.frame, at.wo)));
+                over = std::abs(next->wi.z) * cosine;
     if (!(over > 0)) return;
     const Rgb weight = (turned / over) * next->weight;
     deltas = deltas && next->delta;

@@ -21,6 +21,7 @@ Scene by(Scene scene, Method method, float radius = 0, bool gather = true) {
 Scene scene_named(const std::string& name) {
   if (name == "corner") return corner();
   if (name == "sky") return under_the_sky();
+  if (name == "gem") return gem();
   return one_way(sampled(AnyBrdf(OneWay{}), one_shot_of(AnyBrdf(OneWay{}))));
 }
 
@@ -43,7 +44,7 @@ TEST_P(OneImage, OfEveryIntegrator) {
   judge("photons without gathering", look(by(scene, Method::photons, .1f, false), 8, 96, 31), .01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, OneImage, testing::Values("corner", "sky", "one-way"));
+INSTANTIATE_TEST_SUITE_P(Scenes, OneImage, testing::Values("corner", "sky", "one-way", "gem"));
 
 Host many_threads() {
   Host host;

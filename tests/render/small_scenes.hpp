@@ -116,6 +116,34 @@ inline Scene lit_from_below(const ScatteringPtr& floor) {
   return scene;
 }
 
+// An octahedron that is shaded as a ball: true and shading normals differ by up to 55 degrees. What the wall
+// and the floor show has come by way of it.
+inline Scene gem() {
+  Scene scene = parse_scene(
+      small_scene(
+          "5",
+          wall(R"(<scale value="1.5"/><rotate x="1" angle="90"/><translate y="1.2" z="1"/>)",
+               grey("0.7, 0.7, 0.7")) +
+              R"(<shape type="rectangle"><transform name="to_world"><scale value="1.5"/></transform>)" +
+              grey("0.9, 0.8, 0.7") +
+              R"(</shape><emitter type="directional"><vector name="direction" x="0" y="0.1" z="1"/>
+      <rgb name="irradiance" value="2"/></emitter><emitter type="directional">
+      <vector name="direction" x="0.6" y="0.1" z="-0.7"/><rgb name="irradiance" value="2"/></emitter>)",
+          "0,-4,1.2"),
+      "gem.xml");
+  const auto surface = std::uint32_t(scene.surfaces.size());
+  scene.surfaces.push_back(
+      {two_sided(diffuse({{.9f, .9f, .9f}, nullptr}), diffuse({{.9f, .9f, .9f}, nullptr})), {}});
+  const auto first = std::uint32_t(scene.vertices.size());
+  const Direction ends[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (const Direction d : ends) scene.vertices.push_back({Point{0, 0, .9f} + .8f * d, d, {}});
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    scene.triangles.push_back({{first + k, first + (k + 1) % 4, first + 4}, surface});
+    scene.triangles.push_back({{first + (k + 1) % 4, first + k, first + 5}, surface});
+  }
+  return scene;
+}
+
 struct Sight {
   Image image;                 // the mean of all renders
   double mean = 0, error = 0;  // of the whole picture, from the renders' spread

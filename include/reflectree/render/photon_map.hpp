@@ -12,7 +12,7 @@ namespace reflectree::render {
 struct Photon {
   Point at;
   Direction wi;  // in the world; towards where it came from
-  Rgb power;
+  Rgb etendue;   // its power over its cosine about the true normal: radiance times area and solid angle
   std::uint16_t edges = 1;  // of its path so far
   bool caustic = false;     // every surface on its path, at least one, has bent it by a delta
 };
@@ -23,8 +23,9 @@ class PhotonMap {
   PhotonMap(std::vector<Photon> photons, float radius);
 
   std::size_t size() const { return photons_.size(); }
-  // Radiance that `at` reflects, from photons whose paths have `fewest` to `most` edges: their f times their
-  // power, by the kernel 2 / (pi r^2) (1 - d^2 / r^2) of the disk (Silverman 1986, 4.2).
+  // Radiance that `at` reflects, from photons whose paths have `fewest` to `most` edges: their
+  // f |cos| about the shading normal times their etendue, by the kernel 2 / (pi r^2) (1 - d^2 / r^2) of the
+  // disk (Silverman 1986, 4.2).
   Rgb reflected(const PathVertex& at, int fewest, int most) const;
 
  private:
