@@ -80,6 +80,10 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->capture_default_str()
       ->type_name("NAME");
   command
+      ->add_option("--adjoint", o->reading.adjoint,
+                   "Sampler of the side of light, for photons; else the same with a cosine lobe")
+      ->type_name("NAME");
+  command
       ->add_option("--time", o->how.seconds, "Render for so long instead; the picture depends on the machine")
       ->check(CLI::Range(0., 1e7).description(""))
       ->type_name("SECONDS");

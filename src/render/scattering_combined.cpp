@@ -67,6 +67,18 @@ struct Sampled final : Scattering {
   bool has_pdf() const override { return sampler.has_pdf(); }
 };
 
+struct Swapped {
+  AnyBrdf f;
+  Spectrum operator()(Direction wo, Direction wi) const { return eval(f, wi, wo); }
+  // What is known of theta_o, knots and a factor, is known of theta_i here.
+  BrdfTraits traits() const {
+    BrdfTraits t;
+    t.name = "adjoint of " + f.traits().name;
+    t.channels = f.channels(), t.isotropic = f.traits().isotropic, t.concurrent = f.traits().concurrent;
+    return t;
+  }
+};
+
 Lobes both(const Scattering& a, const Scattering& b) {
   return a.lobes() == b.lobes() ? a.lobes() : Lobes::both;
 }
@@ -158,6 +170,7 @@ std::optional<Scattered> Scattering::sample_adjoint(Direction wi, Uv uv, PathBit
 ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler, std::optional<AnySampler<Spectrum>> adjoint) {
   return std::make_shared<Sampled>(std::move(f), std::move(sampler), std::move(adjoint));
 }
+AnyBrdf adjoint_of(AnyBrdf f) { return AnyBrdf(Swapped{std::move(f)}); }
 ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back) {
   return std::make_shared<TwoSided>(std::move(front), std::move(back));
 }

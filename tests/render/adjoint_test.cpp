@@ -68,7 +68,7 @@ TEST(Adjoint, SamplesOfEveryMaterialHaveItsIntegral) {
       {"two-sided", two_sided(diffuse(white), diffuse(red))},
       {"blend", blend({{.35f, .35f, .35f}, nullptr}, diffuse(red), rough)},
       {"one-way", sampled(one_way_brdf, ordinary)},
-      {"one-way, own sampler", sampled(one_way_brdf, ordinary, one_shot_of(AnyBrdf(OneWayBack{})))},
+      {"one-way, own sampler", sampled(one_way_brdf, ordinary, one_shot_of(adjoint_of(one_way_brdf)))},
       {"one-way, two-sided and blended",
        blend({{.5f, .5f, .5f}, nullptr}, two_sided(sampled(one_way_brdf, ordinary), diffuse(red)),
              diffuse(white))},
@@ -118,8 +118,7 @@ struct Forgetful final : Scattering {
 
 TEST(Adjoint, PhotonsOnNonReciprocalWallsBringWhatPathTracingFinds) {
   const AnyBrdf f(OneWay{});
-  const auto plain = sampled(f, one_shot_of(f)),
-             own = sampled(f, one_shot_of(f), one_shot_of(AnyBrdf(OneWayBack{})));
+  const auto plain = sampled(f, one_shot_of(f)), own = sampled(f, one_shot_of(f), one_shot_of(adjoint_of(f)));
   const Sight reference = look(lit_from_below(plain), 8, 256, 1);
   const auto photons = [&](const char* name, const ScatteringPtr& floor, bool gather, std::uint64_t seed) {
     Scene scene = lit_from_below(floor);

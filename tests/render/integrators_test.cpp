@@ -92,20 +92,48 @@ TEST(Integrators, SobolPointsLessenTheError) {
   const Image truth = render(by(corner(), Method::path), {.samples = 8192, .seed = 9});
   for (const Method method : {Method::path, Method::recursive}) {
     Scene scene = by(corner(), method);
-    const auto error = [&](PointSet::Kind kind) {
+    const auto error = [&](PointSet::Kind kind, std::uint64_t first = 1) {
       scene.points.kind = kind;
       double sum = 0;
-      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      for (std::uint64_t seed = first; seed < first + 2; ++seed) {
         const Image image = render(scene, {.samples = 64, .seed = seed});
         for (std::size_t i = 0; i < image.values.size(); i += 6)
           sum += std::pow(double(image.values[i] - truth.values[i]), 2);
       }
       return sum;
     };
-    const double gain = error(PointSet::Kind::sobol) / error(PointSet::Kind::independent);
+    const double plain = error(PointSet::Kind::independent), gain = error(PointSet::Kind::sobol) / plain;
     std::printf("squared error by Sobol' points, method %d: %.3f of independent ones\n", int(method), gain);
     EXPECT_LT(gain, .7);
+    EXPECT_GT(error(PointSet::Kind::independent, 11) / plain, .7) << "the twin: no gain without points";
   }
+}
+
+TEST(Integrators, AndPointsAreReadFromScenes) {
+  const auto read = [](const std::string& integrator, const std::string& sampler) {
+    return parse_scene("<scene><integrator " + integrator +
+                           "</integrator><sensor type=\"perspective\"><sampler type=\"" + sampler +
+                           "\"/><film type=\"hdrfilm\"/></sensor></scene>",
+                       "read.xml");
+  };
+  const Scene photons = read(R"(type="photons"><integer name="photon_count" value="77"/>
+    <float name="radius" value="0.5"/><float name="alpha" value="0.7"/><integer name="split" value="3"/>
+    <boolean name="final_gather" value="false"/><integer name="max_depth" value="4"/>)",
+                             "ldsampler");
+  EXPECT_EQ(photons.transport.method, Method::photons);
+  EXPECT_EQ(photons.transport.photons.count, 77);
+  EXPECT_EQ(photons.transport.photons.radius, .5f);
+  EXPECT_EQ(photons.transport.photons.shrink, .7f);
+  EXPECT_EQ(photons.transport.split, 3);
+  EXPECT_FALSE(photons.transport.photons.gather);
+  EXPECT_EQ(photons.max_depth, 4);
+  EXPECT_EQ(photons.points.kind, PointSet::Kind::sobol);
+  const Scene recursive = read(R"(type="recursive"><integer name="split" value="9"/>)", "stratified");
+  EXPECT_EQ(recursive.transport.method, Method::recursive);
+  EXPECT_EQ(recursive.transport.split, 9);
+  EXPECT_EQ(recursive.points.kind, PointSet::Kind::stratified);
+  EXPECT_EQ(read(R"(type="direct">)", "independent").transport.method, Method::direct);
+  EXPECT_THROW(read(R"(type="path">)", "halton"), Error);
 }
 
 TEST(Integrators, RefuseWhatTheyCannotDo) {

@@ -71,9 +71,6 @@ inline Scene under_the_sky() {
 struct OneWay {
   float operator()(Direction wo, Direction wi) const { return (.05f + .85f * (1 - wo.z) * wi.z * wi.z) / pi; }
 };
-struct OneWayBack {
-  float operator()(Direction wo, Direction wi) const { return OneWay{}(wi, wo); }
-};
 
 inline AnySampler<Spectrum> one_shot_of(const AnyBrdf& f) {
   return *find_sampler("one-shot")->make({f, Material{}, {}}, Host{});

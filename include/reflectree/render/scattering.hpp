@@ -73,6 +73,8 @@ ScatteringPtr dielectric(float eta, Texture reflectance, Texture transmittance);
 // tenth of a cosine lobe, which reaches what the ordinary sampler may miss.
 ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler,
                       std::optional<AnySampler<Spectrum>> adjoint = std::nullopt);
+// f with its directions swapped: what a sampler of light's side is made of.
+AnyBrdf adjoint_of(AnyBrdf f);
 ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back);
 // (1 - weight) a + weight b.
 ScatteringPtr blend(Texture weight, ScatteringPtr a, ScatteringPtr b);

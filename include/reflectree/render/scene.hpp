@@ -99,6 +99,7 @@ struct Scene {
 struct SceneOptions {
   std::map<std::string, std::string> defines;  // $name
   std::string sampler = "one-shot";            // of reflectree::samplers(): "reflectree" and "measured"
+  std::string adjoint = "";  // of light's side, for photons; "": the same and a cosine lobe, see sampled()
 };
 
 // Their names, in scenes and on the command line; "ldsampler", Mitsuba's word, is sobol.
