@@ -42,7 +42,10 @@ PathBits::PathBits(PointSet set, std::uint64_t seed, std::uint64_t pixel, std::u
 std::uint32_t PathBits::coordinate() {
   const std::uint32_t dimension = dimension_++;
   --left_;
-  if (set_.kind == PointSet::Kind::sobol) return scrambled_sobol_bits(index_, dimension, scramble_);
+  if (set_.kind == PointSet::Kind::sobol) {
+    if (!placed_) in_block_ = sobol_index_in_block(index_, dimension / 4, scramble_), placed_ = true;
+    return scrambled_sobol_in_block(in_block_, dimension, scramble_);
+  }
   const std::uint32_t cells = set_.columns * set_.rows, round = index_ / cells;
   const std::uint64_t pair = (std::uint64_t(scramble_) << 32U) + dimension / 2;
   const std::uint32_t cell = permuted(index_ % cells, cells, mixed(mixed(pair) + round));

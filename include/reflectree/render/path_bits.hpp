@@ -31,7 +31,7 @@ class PathBits {
     if (set_.kind == PointSet::Kind::independent) return;
     dimension_ =
         4 * (1 + std::uint32_t(Decision::count) * std::uint32_t(vertex - 1) + std::uint32_t(decision));
-    left_ = 4;
+    left_ = 4, placed_ = false;
   }
   std::uint32_t operator()() { return left_ == 0 ? rest_() : coordinate(); }
 
@@ -52,6 +52,8 @@ class PathBits {
 
   PointSet set_;
   std::uint32_t index_ = 0, dimension_ = 0, left_ = 0, scramble_ = 0;
+  std::uint32_t in_block_ = 0;  // the block's point of the Sobol' sequence, once `placed_`
+  bool placed_ = false;
   Pcg32 rest_;
 };
 
