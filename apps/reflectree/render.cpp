@@ -106,7 +106,7 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->check(CLI::Range(1, 64).description(""))
       ->type_name("N");
   command->add_option("--photons", o->photons, "Light paths a pass; else as many as pixels")
-      ->check(CLI::Range(1, 1 << 30).description(""))
+      ->check(CLI::Range(1, 1 << 26).description(""))
       ->type_name("N");
   command->add_option("--radius", o->radius, "Photons' radius in the first pass; else four pixels")
       ->check(CLI::Range(1e-9, 1e9).description(""))

@@ -33,7 +33,7 @@ Rgb PathTracer::radiance(Point origin, Direction direction, PathBits& u) const {
     if (depth == scene.max_depth) return result;
     const Scattering& scattering = at.scattering();
     const bool competes = scattering.has_pdf() && technique_ != Technique::surface;
-    if (competes) {
+    if (technique_ != Technique::surface) {
       u.begin(depth, Decision::light);
       result = result + throughput * world_.direct(at, technique_, u);
     }

@@ -14,6 +14,9 @@ namespace {
 
 float largest(Rgb c) { return std::max({c.r, c.g, c.b}); }
 
+// Each path leaves some photons of 40 bytes.
+constexpr std::size_t usual_count = std::size_t(1) << 20U, largest_count = std::size_t(1) << 26U;
+
 // Four pixels at the median distance of what the camera sees through a grid of its pixels.
 float radius_for(const World& world) {
   const Scene& scene = world.scene;
@@ -37,10 +40,14 @@ PhotonMapper::PhotonMapper(const Scene& scene, Technique technique)
       technique_(technique),
       emission_(scene),
       options_(scene.transport.photons),
-      count_(std::size_t(options_.count > 0 ? options_.count : scene.width * scene.height)),
+      count_(options_.count > 0
+                 ? std::size_t(options_.count)
+                 : std::min(std::size_t(scene.width) * std::size_t(scene.height), usual_count)),
       split_(std::uint32_t(scene.transport.split > 0 ? scene.transport.split : 4)),
       first_radius_(options_.radius) {
   if (split_ > max_split) throw Error("too many directions", "--split", "choose 1 to 64");
+  if (options_.count < 0 || count_ > largest_count)
+    throw Error("too many photons", "--photons", "choose at most 67108864 a pass; passes add up");
   if (!(options_.shrink > 0 && options_.shrink <= 1))
     throw Error("photons' shrink is not in (0, 1]", "the integrator", "2/3 is usual, 1 keeps the radius");
   if (!(first_radius_ >= 0) || !std::isfinite(first_radius_))
@@ -111,10 +118,8 @@ Rgb PhotonMapper::leaving(const PathVertex& at, int depth, std::uint32_t split, 
   Rgb sum;
   for (std::uint32_t k = 0; k < n; ++k) {
     branches[k] = n > 1 ? u.branch(k, n) : u;
-    if (competes) {
-      branches[k].begin(depth, Decision::light);
-      sum = sum + world_.direct(at, technique_, branches[k]);
-    }
+    branches[k].begin(depth, Decision::light);
+    sum = sum + world_.direct(at, technique_, branches[k]);
     branches[k].begin(depth, Decision::surface);
   }
   const std::size_t filled =

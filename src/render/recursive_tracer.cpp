@@ -61,7 +61,7 @@ Rgb RecursiveTracer::leaving(const PathVertex& at, const Ray& ray, std::span<Pat
   const bool competes = scattering.has_pdf() && technique_ != Technique::surface;
   Rgb sum;
   for (PathBits& bits : u) {
-    if (competes) {
+    if (technique_ != Technique::surface) {
       bits.begin(ray.depth, Decision::light);
       sum = sum + world_.direct(at, technique_, bits);
     }

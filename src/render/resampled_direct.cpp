@@ -51,6 +51,7 @@ ResampledDirect::Arriving ResampledDirect::unshadowed(Point at, Direction direct
 }
 
 Rgb ResampledDirect::radiance(Point origin, Direction direction, PathBits& u) const {
+  if (world_.scene.max_depth == 0) return {};
   const auto hit = world_.embree.intersect(origin, direction, 0);
   if (!hit) {
     const auto& sky = world_.scene.environment;

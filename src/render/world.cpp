@@ -37,7 +37,7 @@ bool World::sees(Point at, Direction direction, float distance) const {
 
 Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
   const auto light = lights.sample(at.on.at, u);
-  if (!light || !(light->pdf > 0)) return {};
+  if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
   const Direction wi = to_local(at.frame, light->direction);
   const Rgb arriving = at.scattering().f_cos(at.wo, wi, at.on.uv) * light->radiance;
   if (arriving == Rgb{} || !sees(at.on.at, light->direction, light->distance)) return {};

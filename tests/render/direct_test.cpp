@@ -66,6 +66,33 @@ TEST(Direct, EveryTechniqueShowsThePathTracersFirstBounce) {
   }
 }
 
+// A sampler without a density leaves lamps to its own directions, but the sun is not found by chance.
+struct Blind {
+  using Value = Spectrum;
+  AnySampler<Spectrum> own;
+  template <RandomBits U>
+  std::optional<DirectionSample<Spectrum>> sample(Direction wo, U& u) const {
+    UniformBits bits(Pcg32((std::uint64_t(u()) << 32U) | u()));
+    return own.sample(wo, bits);
+  }
+};
+
+TEST(Direct, SamplersWithoutADensitySeeEveryLight) {
+  const AnyBrdf f(OneWay{});
+  const Scene seeing = one_way(sampled(f, one_shot_of(f))),
+              blind = one_way(sampled(f, AnySampler<Spectrum>("blind", Blind{one_shot_of(f)})));
+  ASSERT_FALSE(blind.surfaces[blind.triangles[0].surface].scattering->has_pdf());
+  const Sight reference = look(seeing, 8, 256, 1);
+  for (const Method method : {Method::path, Method::recursive, Method::photons}) {
+    Scene scene = blind, dark = blind;
+    scene.transport.method = method, scene.transport.photons = {3000, .1f, 2 / 3.f, true};
+    dark.transport.method = method, dark.directional_lights.clear();
+    const int samples = method == Method::path ? 512 : 64;
+    EXPECT_TRUE(agreement(look(scene, 8, samples, 11), reference, 1, .01)(1.25)) << int(method);
+    EXPECT_FALSE(agreement(look(dark, 2, samples, 11), reference, 1, .01)(1.25)) << "the twin: no sun";
+  }
+}
+
 // Under a sky whose light lies within a patch, most directions of the surface bring nothing.
 double variance(const Scene& scene, Technique technique) {
   const Image image = render(scene, {.samples = 64, .seed = 3, .technique = technique});

@@ -37,6 +37,7 @@ struct World {
   float near(Point at) const;
   bool sees(Point at, Direction direction, float distance) const;
   // Next-event estimation: a point on a light, weighed against the directions that the surface would draw.
+  // Where those have no density, they are left to find what they can: all but points and directions.
   Rgb direct(const PathVertex& at, Technique technique, PathBits& u) const;
 
   const Scene& scene;
