@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/render/photon_map.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
