@@ -15,16 +15,20 @@ struct Options {
   std::vector<std::string> defines;
   render::SceneOptions reading;
   render::RenderOptions how;
-  std::string technique = "balance";
+  std::string technique = "balance", integrator, points;
+  int split = 0, photons = 0;
+  float radius = 0, alpha = 0;
+  bool no_gather = false;
   bool resume = false;
 };
 
 render::Technique technique_of(const std::string& name) {
   using render::Technique;
-  return name == "power"   ? Technique::power
-         : name == "light" ? Technique::light
-         : name == "brdf"  ? Technique::surface
-                           : Technique::balance;
+  return name == "power"       ? Technique::power
+         : name == "light"     ? Technique::light
+         : name == "brdf"      ? Technique::surface
+         : name == "resampled" ? Technique::resampled
+                               : Technique::balance;
 }
 
 int run_render(const Context& context, Options& o) {
@@ -34,7 +38,14 @@ int run_render(const Context& context, Options& o) {
       throw Error("no '=' in '" + define + "'", "-D", "write NAME=VALUE");
     o.reading.defines[define.substr(0, at)] = define.substr(at + 1);
   }
-  const render::Scene scene = render::load_scene(o.scene, o.reading, context.host("building"));
+  render::Scene scene = render::load_scene(o.scene, o.reading, context.host("building"));
+  if (!o.integrator.empty()) scene.transport.method = *render::method_of(o.integrator);
+  if (!o.points.empty()) scene.points.kind = *render::points_of(o.points);
+  if (o.split > 0) scene.transport.split = o.split;
+  if (o.photons > 0) scene.transport.photons.count = o.photons;
+  if (o.radius > 0) scene.transport.photons.radius = o.radius;
+  if (o.alpha > 0) scene.transport.photons.shrink = o.alpha;
+  if (o.no_gather) scene.transport.photons.gather = false;
   const std::string sums = o.output + ".sums";
   render::Film film;
   if (o.resume) film = render::load_film(sums);
@@ -54,7 +65,7 @@ int run_render(const Context& context, Options& o) {
 }  // namespace
 
 void add_render(CLI::App& app, Context& context, Run& run) {
-  CLI::App* command = app.add_subcommand("render", "Render a Mitsuba 3 scene by path tracing");
+  CLI::App* command = app.add_subcommand("render", "Render a Mitsuba 3 scene");
   auto o = std::make_shared<Options>();
   command->add_option("scene", o->scene, "Scene (.xml)")->required()->type_name("SCENE");
   command->add_option("-o,--output", o->output, "OpenEXR picture; a PNG is put beside it")
@@ -69,16 +80,41 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->capture_default_str()
       ->type_name("NAME");
   command
+      ->add_option("--adjoint", o->reading.adjoint,
+                   "Sampler of the side of light, for photons; else the same with a cosine lobe")
+      ->type_name("NAME");
+  command
       ->add_option("--time", o->how.seconds, "Render for so long instead; the picture depends on the machine")
       ->check(CLI::Range(0., 1e7).description(""))
       ->type_name("SECONDS");
   command->add_flag("--resume", o->resume, "Go on from FILE.sums, with the same scene and seed");
   command
-      ->add_option("--technique", o->technique,
-                   "How lights are found: balance or power (both ways, by that heuristic), light, brdf")
-      ->check(CLI::IsMember({"balance", "power", "light", "brdf"}).description(""))
+      ->add_option(
+          "--technique", o->technique,
+          "How lights are found: balance or power (both ways, by that heuristic), light, brdf; "
+          "with --integrator direct, also resampled: brdf directions resampled by the light they see")
+      ->check(CLI::IsMember({"balance", "power", "light", "brdf", "resampled"}).description(""))
       ->capture_default_str()
       ->type_name("NAME");
+  command->add_option("--integrator", o->integrator, "path, direct, recursive or photons; else the scene's")
+      ->check(CLI::IsMember({"path", "direct", "recursive", "photons"}).description(""))
+      ->type_name("NAME");
+  command->add_option("--points", o->points, "independent, stratified or sobol; else the scene's")
+      ->check(CLI::IsMember({"independent", "stratified", "sobol"}).description(""))
+      ->type_name("NAME");
+  command->add_option("--split", o->split, "Directions at a hit: recursive, photons, direct")
+      ->check(CLI::Range(1, 64).description(""))
+      ->type_name("N");
+  command->add_option("--photons", o->photons, "Light paths a pass; else as many as pixels")
+      ->check(CLI::Range(1, 1 << 26).description(""))
+      ->type_name("N");
+  command->add_option("--radius", o->radius, "Photons' radius in the first pass; else four pixels")
+      ->check(CLI::Range(1e-9, 1e9).description(""))
+      ->type_name("LENGTH");
+  command->add_option("--alpha", o->alpha, "How the radius shrinks, in (0, 1]; 1: it stays; else 2/3")
+      ->check(CLI::Range(1e-3, 1.).description(""))
+      ->type_name("X");
+  command->add_flag("--no-gather", o->no_gather, "Look photons up where the camera's path ends");
   command->callback([&context, &run, o] { run = [&context, o] { return run_render(context, *o); }; });
 }
 

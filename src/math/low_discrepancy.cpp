@@ -2,6 +2,7 @@
 #include "reflectree/math/low_discrepancy.hpp"
 
 #include <array>
+#include <bit>
 
 namespace reflectree {
 namespace {
@@ -41,6 +42,21 @@ constexpr Matrix van_der_corput() {
 constexpr std::array<Matrix, 4> matrices = {van_der_corput(), directions({1, 0, {1}}),
                                             directions({2, 1, {1, 3}}), directions({3, 1, {1, 3, 1}})};
 
+// What each byte of the index adds: four look-ups in place of a bit at a time.
+using ByteTables = std::array<std::array<std::uint32_t, 256>, 4>;
+constexpr ByteTables by_bytes(const Matrix& v) {
+  ByteTables tables{};
+  for (std::size_t byte = 0; byte < 4; ++byte) {
+    for (std::size_t value = 1; value < 256; ++value) {
+      const auto low = std::size_t(std::countr_zero(value));
+      tables[byte][value] = tables[byte][value & (value - 1)] ^ v[8 * byte + low];
+    }
+  }
+  return tables;
+}
+constexpr std::array<ByteTables, 4> tables = {by_bytes(matrices[0]), by_bytes(matrices[1]),
+                                              by_bytes(matrices[2]), by_bytes(matrices[3])};
+
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   x = (x << 16U) | (x >> 16U);
   x = ((x & 0x00ff00ffU) << 8U) | ((x & 0xff00ff00U) >> 8U);
@@ -65,10 +81,8 @@ constexpr std::uint32_t hash(std::uint32_t seed, std::uint32_t number) {
 }  // namespace
 
 std::uint32_t sobol_bits(std::uint32_t index, std::uint32_t dimension) {
-  const Matrix& v = matrices[dimension];
-  std::uint32_t x = 0;
-  for (unsigned i = 0; index != 0; ++i, index >>= 1U) x ^= v[i] & (0U - (index & 1U));
-  return x;
+  const ByteTables& t = tables[dimension];
+  return t[0][index & 255U] ^ t[1][(index >> 8U) & 255U] ^ t[2][(index >> 16U) & 255U] ^ t[3][index >> 24U];
 }
 
 // In reversed bits, multiplication, addition and x ^= x * even carry from low to high only: each bit
@@ -83,11 +97,18 @@ std::uint32_t owen_scramble(std::uint32_t bits, std::uint32_t seed) {
   return reverse_bits(x);
 }
 
+// A nested permutation of the index takes 2^m aligned consecutive points to 2^m such points.
+std::uint32_t sobol_index_in_block(std::uint32_t index, std::uint32_t block, std::uint32_t seed) {
+  return block == 0 ? index : owen_scramble(index, hash(seed, 0x80000000U + block));
+}
+
+std::uint32_t scrambled_sobol_in_block(std::uint32_t index_in_block, std::uint32_t dimension,
+                                       std::uint32_t seed) {
+  return owen_scramble(sobol_bits(index_in_block, dimension % 4U), hash(seed, dimension));
+}
+
 std::uint32_t scrambled_sobol_bits(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
-  const std::uint32_t block = dimension / 4U;
-  // A nested permutation of the index takes 2^m aligned consecutive points to 2^m such points.
-  const std::uint32_t shuffled = block == 0 ? index : owen_scramble(index, hash(seed, 0x80000000U + block));
-  return owen_scramble(sobol_bits(shuffled, dimension % 4U), hash(seed, dimension));
+  return scrambled_sobol_in_block(sobol_index_in_block(index, dimension / 4U, seed), dimension, seed);
 }
 
 }  // namespace reflectree

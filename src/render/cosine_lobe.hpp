@@ -5,16 +5,20 @@
 #include <cmath>
 
 #include "reflectree/math/direction.hpp"
-#include "reflectree/math/random.hpp"
+#include "reflectree/render/path_bits.hpp"
 #include "reflectree/render/scattering.hpp"
 
 namespace reflectree::render {
 
 inline float cosine_pdf(Direction wi) { return wi.z > 0 ? wi.z / reflectree::pi : 0; }
 
-inline Direction cosine_direction(Pcg32& u) {
-  const float r2 = to_unit_float(u()), phi = 2 * reflectree::pi * to_unit_float(u()), r = std::sqrt(r2);
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r2)};
+inline Direction cosine_direction(float u1, float u2) {
+  const float phi = 2 * reflectree::pi * u2, r = std::sqrt(u1);
+  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u1)};
+}
+inline Direction cosine_direction(PathBits& u) {
+  const float u1 = to_unit_float(u());
+  return cosine_direction(u1, to_unit_float(u()));
 }
 
 // rho / (1 - rho F), or rho / (1 - F): what leaves a Lambertian ground under an interface that reflects F.

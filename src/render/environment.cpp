@@ -68,7 +68,7 @@ float Environment::pdf(Direction direction) const {
   return mass(c.x, c.y) / (2 * pi * pi * sine);
 }
 
-Direction Environment::sample(Pcg32& u) const {
+Direction Environment::sample(PathBits& u) const {
   if (!picture_) {
     const float z = 1 - 2 * to_unit_float(u()), phi = 2 * pi * to_unit_float(u());
     const float r = std::sqrt(std::max(0.f, 1 - z * z));

@@ -11,22 +11,30 @@ namespace reflectree::render {
 
 namespace {
 
-// Offsets from the pixel's centre are drawn from the filter, so that every sample counts alike.
-float offset(Filter filter, Pcg32& u) {
-  const float a = to_unit_float(u());
+// Offsets from the pixel's centre are drawn from the filter, so that every sample counts alike: its
+// distribution inverted, for points that are stratified.
+Vec2<float> offset(Filter filter, PathBits& u) {
+  const float a = to_unit_float(u()), b = to_unit_float(u());
+  const auto tent = [](float x) { return x < .5f ? std::sqrt(2 * x) - 1 : 1 - std::sqrt(2 - 2 * x); };
   switch (filter.kind) {
     case Filter::Kind::box:
-      return filter.width * (2 * a - 1);
+      return {filter.width * (2 * a - 1), filter.width * (2 * b - 1)};
     case Filter::Kind::tent:
-      return filter.width * (a + to_unit_float(u()) - 1);
+      return {filter.width * tent(a), filter.width * tent(b)};
     case Filter::Kind::gaussian:
       break;
   }
-  // Box & Muller; beyond four deviations, 6e-5 of the mass, the filter ends.
-  for (float r = a;; r = to_unit_float(u())) {
-    const float x = std::sqrt(-2 * std::log(1 - r)) * std::cos(2 * pi * to_unit_float(u()));
-    if (std::abs(x) < 4) return filter.width * x;
-  }
+  // Box & Muller; beyond four deviations, exp(-8) of the mass, the filter ends.
+  const float r = filter.width * std::sqrt(-2 * std::log(1 - a * (1 - std::exp(-8.f))));
+  return {r * std::cos(2 * pi * b), r * std::sin(2 * pi * b)};
+}
+
+// As many strata as there are to be samples, or fewer.
+PointSet points_for(PointSet set, int samples) {
+  const auto n = std::uint32_t(samples);
+  set.columns = std::max(1U, std::uint32_t(std::sqrt(double(n))));
+  set.rows = std::max(1U, n / set.columns);
+  return set;
 }
 
 Direction through(const Scene& scene, float x, float y) {
@@ -35,14 +43,14 @@ Direction through(const Scene& scene, float x, float y) {
   return normalize(c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up);
 }
 
-void add_samples(const PathTracer& tracer, const Scene& scene, int x, int y, int first, int last,
-                 std::uint64_t seed, double* sums) {
+void add_samples(const Integrator& integrator, const Scene& scene, int x, int y, int first, int last,
+                 const Film& film, double* sums) {
   const auto pixel = std::uint64_t(y) * std::uint64_t(scene.width) + std::uint64_t(x);
   for (int s = first; s < last; ++s) {
-    Pcg32 u(seed * 0x9e3779b97f4a7c15ULL + std::uint64_t(s), pixel);
-    const float at_x = float(x) + .5f + offset(scene.filter, u);
-    const float at_y = float(y) + .5f + offset(scene.filter, u);
-    const Rgb v = tracer.radiance(scene.camera.origin, through(scene, at_x, at_y), u);
+    PathBits u(film.points, film.seed, pixel, std::uint32_t(s));
+    const Vec2<float> off = offset(scene.filter, u);
+    const Direction along = through(scene, float(x) + .5f + off.x, float(y) + .5f + off.y);
+    const Rgb v = integrator.radiance(scene.camera.origin, along, u);
     for (int k = 0; k < 3; ++k) {
       const auto value = double(channel(v, k));
       sums[k] += value, sums[k + 3] += value * value;
@@ -56,19 +64,21 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  const PathTracer tracer(scene, options.technique);
-  if (film.sums.empty()) {
-    film = {scene.width, scene.height, 0, options.seed, {}};
-    film.sums.resize(6 * std::size_t(scene.width) * std::size_t(scene.height));
-  }
-  if (film.width != scene.width || film.height != scene.height || film.seed != options.seed) {
-    throw Error("size or seed differ from the scene's", "--resume", "render anew");
-  }
+  const auto integrator = make_integrator(scene, options.technique);
   const bool timed = options.seconds > 0;
   const int goal = timed ? (1 << 30) : options.samples > 0 ? options.samples : scene.samples;
+  if (film.sums.empty()) {
+    const PointSet points = points_for(scene.points, timed ? 16 : goal);
+    film = {scene.width, scene.height, 0, options.seed, points, {}};
+    film.sums.resize(6 * std::size_t(scene.width) * std::size_t(scene.height));
+  }
+  if (film.width != scene.width || film.height != scene.height || film.seed != options.seed ||
+      film.points.kind != scene.points.kind) {
+    throw Error("size, seed or points differ from the scene's", "--resume", "render anew");
+  }
   const int first = film.samples;
   while (film.samples < goal && !(timed && film.samples > first && elapsed() >= options.seconds)) {
-    const int pass = std::min(timed ? 1 : 8, goal - film.samples);
+    const int pass = std::min(timed ? 1 : integrator->longest_pass(), goal - film.samples);
     Film next = film;
     std::atomic<int> rows = 0;
     std::atomic<bool> stopped = false;
@@ -77,13 +87,14 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
         if (host.cancelled()) stopped = true;
         for (int x = 0; x < scene.width && !stopped; ++x) {
           double* sums = next.sums.data() + 6 * (y * std::size_t(scene.width) + std::size_t(x));
-          add_samples(tracer, scene, x, int(y), film.samples, film.samples + pass, options.seed, sums);
+          add_samples(*integrator, scene, x, int(y), film.samples, film.samples + pass, film, sums);
         }
         const float done = float(film.samples - first) + float(pass) * float(++rows) / float(scene.height);
         host.progress(timed ? float(elapsed() / options.seconds) : done / float(goal - first));
       }
     };
     try {
+      integrator->prepare(film.samples, film.seed, host);
       host.parallel_for(std::size_t(scene.height), rows_of);
     } catch (const Cancelled&) {
       stopped = true;

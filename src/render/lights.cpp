@@ -22,7 +22,7 @@ double cone_of(const Sphere& s, Point at) {
   return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
 }
 
-std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance, Pcg32& u) {
+std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance, PathBits& u) {
   const double cone = cone_of(s, at);
   if (!(cone > 0) || s.inwards) return std::nullopt;
   const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
@@ -78,7 +78,7 @@ std::optional<LightSample> Lights::sample_area(Point at, Point on, Direction nor
   return LightSample{direction, distance, distance * distance / (cosine * float(area)), false, radiance};
 }
 
-std::optional<LightSample> Lights::sample(Point at, Pcg32& u) const {
+std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
   if (lights_.empty()) return std::nullopt;
   const auto n = std::uint32_t(lights_.size());
   const Light& light = lights_[std::size_t((std::uint64_t(u()) * n) >> 32U)];

@@ -4,7 +4,7 @@
 // Heitz & d'Eon 2014 (eq. 10), along wo, while the slope across is Gaussian.
 #pragma once
 
-#include "reflectree/math/random.hpp"
+#include "reflectree/render/path_bits.hpp"
 #include "reflectree/render/scattering.hpp"
 
 namespace reflectree::render {
@@ -18,7 +18,7 @@ class Microfacets {
   // Density of `sample`, per solid angle of wh.
   float pdf(Direction wo, Direction wh) const;
   Direction sample(Direction wo, float u1, float u2) const;
-  Direction sample(Direction wo, Pcg32& u) const {
+  Direction sample(Direction wo, PathBits& u) const {
     const float u1 = to_unit_float(u());
     return sample(wo, u1, to_unit_float(u()));
   }

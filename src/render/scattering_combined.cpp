@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any function with any sampler; and materials made of others.
+#include <array>
+#include <cmath>
+
+#include "cosine_lobe.hpp"
 #include "reflectree/render/scattering.hpp"
 
 namespace reflectree::render {
@@ -9,21 +13,75 @@ namespace {
 struct Sampled final : Scattering {
   AnyBrdf f;
   AnySampler<Spectrum> sampler;
-  Sampled(AnyBrdf function, AnySampler<Spectrum> s) : f(std::move(function)), sampler(std::move(s)) {}
+  std::optional<AnySampler<Spectrum>> adjoint;
+  Sampled(AnyBrdf function, AnySampler<Spectrum> s, std::optional<AnySampler<Spectrum>> light_side)
+      : f(std::move(function)), sampler(std::move(s)), adjoint(std::move(light_side)) {}
   Rgb f_cos(Direction wo, Direction wi, Uv) const override {
     return wo.z > 0 && wi.z > 0 ? wi.z * to_rgb(eval(f, wo, wi)) : Rgb{};
   }
   float pdf(Direction wo, Direction wi, Uv) const override {
     return wo.z > 0 && wi.z > 0 ? sampler.pdf(wo, wi) : 0;
   }
-  std::optional<Scattered> sample(Direction wo, Uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
-    const auto drawn = sampler.sample(wo, u);
+    UniformBits bits = u.lend();
+    const auto drawn = sampler.sample(wo, bits);
+    u.take_back(bits);
     if (!drawn) return std::nullopt;
     return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
   }
+  std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
+    if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, uv, u, out);
+    if (!(wo.z > 0)) return 0;
+    std::array<DirectionSample<Spectrum>, max_split> drawn;
+    UniformBits bits = u[0].lend();
+    const std::size_t filled = sampler.sample_n(wo, bits, std::span(drawn).first(u.size()));
+    u[0].take_back(bits);
+    for (std::size_t i = 0; i < filled; ++i) out[i] = {drawn[i].wi, drawn[i].pdf, to_rgb(drawn[i].weight)};
+    return filled;
+  }
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    if (!(wi.z > 0)) return std::nullopt;
+    if (adjoint) {
+      UniformBits bits = u.lend();
+      const auto drawn = adjoint->sample(wi, bits);
+      u.take_back(bits);
+      if (!drawn) return std::nullopt;
+      return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
+    }
+    const float cosine = sampler.has_pdf() ? .1f : 1;
+    Direction wo;
+    if (to_unit_float(u()) < cosine) {
+      wo = cosine_direction(u);
+    } else {
+      UniformBits bits = u.lend();
+      const auto drawn = sampler.sample(wi, bits);
+      u.take_back(bits);
+      if (!drawn) return std::nullopt;
+      wo = drawn->wi;
+    }
+    const float density = cosine * cosine_pdf(wo) + (1 - cosine) * pdf(wi, wo, uv);
+    if (!(density > 0)) return std::nullopt;
+    return Scattered{wo, density, (wo.z / density) * to_rgb(eval(f, wo, wi))};
+  }
   bool has_pdf() const override { return sampler.has_pdf(); }
 };
+
+struct Swapped {
+  AnyBrdf f;
+  Spectrum operator()(Direction wo, Direction wi) const { return eval(f, wi, wo); }
+  // What is known of theta_o, knots and a factor, is known of theta_i here.
+  BrdfTraits traits() const {
+    BrdfTraits t;
+    t.name = "adjoint of " + f.traits().name;
+    t.channels = f.channels(), t.isotropic = f.traits().isotropic, t.concurrent = f.traits().concurrent;
+    return t;
+  }
+};
+
+Lobes both(const Scattering& a, const Scattering& b) {
+  return a.lobes() == b.lobes() ? a.lobes() : Lobes::both;
+}
 
 constexpr Direction flipped(Direction w) { return {w.x, w.y, -w.z}; }
 
@@ -36,12 +94,25 @@ struct TwoSided final : Scattering {
   float pdf(Direction wo, Direction wi, Uv uv) const override {
     return wo.z > 0 ? front->pdf(wo, wi, uv) : back->pdf(flipped(wo), flipped(wi), uv);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (wo.z > 0) return front->sample(wo, uv, u);
     auto drawn = back->sample(flipped(wo), uv, u);
     if (drawn) drawn->wi = flipped(drawn->wi);
     return drawn;
   }
+  std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
+    if (wo.z > 0) return front->sample_n(wo, uv, u, out);
+    const std::size_t filled = back->sample_n(flipped(wo), uv, u, out);
+    for (Scattered& s : out.first(filled)) s.wi = flipped(s.wi);
+    return filled;
+  }
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    if (wi.z > 0) return front->sample_adjoint(wi, uv, u);
+    auto drawn = back->sample_adjoint(flipped(wi), uv, u);
+    if (drawn) drawn->wi = flipped(drawn->wi);
+    return drawn;
+  }
+  Lobes lobes() const override { return both(*front, *back); }
   bool has_pdf() const override { return front->has_pdf() && back->has_pdf(); }
 };
 
@@ -60,7 +131,7 @@ struct Blend final : Scattering {
     return (1 - w) * a->pdf(wo, wi, uv) + w * b->pdf(wo, wi, uv);
   }
   // One part is drawn by its share; where both have densities, its direction is weighed by the sum of both.
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const float w = share(uv);
     auto drawn = to_unit_float(u()) < w ? b->sample(wo, uv, u) : a->sample(wo, uv, u);
     if (!drawn || drawn->delta || !has_pdf()) return drawn;
@@ -69,14 +140,37 @@ struct Blend final : Scattering {
     drawn->weight = (1 / drawn->pdf) * f_cos(wo, drawn->wi, uv);
     return drawn;
   }
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    return to_unit_float(u()) < share(uv) ? b->sample_adjoint(wi, uv, u) : a->sample_adjoint(wi, uv, u);
+  }
+  Lobes lobes() const override { return both(*a, *b); }
   bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
 };
 
 }  // namespace
 
-ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler) {
-  return std::make_shared<Sampled>(std::move(f), std::move(sampler));
+std::size_t Scattering::sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const {
+  std::size_t filled = 0;
+  for (const PathBits& own : u) {
+    PathBits bits = own;
+    const auto drawn = sample(wo, uv, bits);
+    if (drawn) out[filled] = *drawn, u[filled++] = bits;
+  }
+  return filled;
 }
+
+std::optional<Scattered> Scattering::sample_adjoint(Direction wi, Uv uv, PathBits& u) const {
+  auto drawn = sample(wi, uv, u);
+  if (!drawn || drawn->delta) return drawn;  // mirrors are reciprocal
+  const Direction wo = drawn->wi;
+  drawn->weight = std::abs(wo.z / wi.z) / drawn->pdf * f_cos(wo, wi, uv);
+  return drawn;
+}
+
+ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler, std::optional<AnySampler<Spectrum>> adjoint) {
+  return std::make_shared<Sampled>(std::move(f), std::move(sampler), std::move(adjoint));
+}
+AnyBrdf adjoint_of(AnyBrdf f) { return AnyBrdf(Swapped{std::move(f)}); }
 ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back) {
   return std::make_shared<TwoSided>(std::move(front), std::move(back));
 }

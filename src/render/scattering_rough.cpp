@@ -28,7 +28,7 @@ struct RoughConductor final : Scattering {
     const Direction wh = normalize(wo + wi);
     return normals.pdf(wo, wh) / (4 * dot(wo, wh));
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wh = normals.sample(wo, u), wi = reflect(wo, wh);
     const float density = pdf(wo, wi, uv);
@@ -79,10 +79,11 @@ struct RoughPlastic final : Scattering {
     const float specular = chance(wo);
     return specular * normals.pdf(wo, wh) / (4 * dot(wo, wh)) + (1 - specular) * cosine_pdf(wi);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
+    const float u1 = to_unit_float(u()), u2 = to_unit_float(u());  // first, for points that are a net in two
     const Direction wi =
-        to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u)) : cosine_direction(u);
+        to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u1, u2)) : cosine_direction(u1, u2);
     const float density = pdf(wo, wi, uv);
     if (!(density > 0)) return std::nullopt;
     return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};

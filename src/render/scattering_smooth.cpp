@@ -19,7 +19,7 @@ struct Diffuse final : Scattering {
     return wo.z > 0 && wi.z > 0 ? (wi.z / reflectree::pi) * eval(reflectance, uv) : Rgb{};
   }
   float pdf(Direction wo, Direction wi, Uv) const override { return wo.z > 0 ? cosine_pdf(wi) : 0; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wi = cosine_direction(u);
     return Scattered{wi, cosine_pdf(wi), eval(reflectance, uv)};
@@ -31,8 +31,9 @@ struct Conductor final : Scattering {
   Texture specular;
   Conductor(Rgb e, Rgb absorption, Texture t) : eta(e), k(absorption), specular(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
+  Lobes lobes() const override { return Lobes::delta; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32&) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits&) const override {
     if (!(wo.z > 0)) return std::nullopt;
     return Scattered{mirrored(wo), 0, eval(specular, uv) * fresnel_conductor(wo.z, eta, k), true};
   }
@@ -49,6 +50,7 @@ struct SmoothPlastic final : Scattering {
     const float s = reflectance * specular_weight, d = (1 - reflectance) * (1 - specular_weight);
     return s + d > 0 ? s / (s + d) : 1;
   }
+  Lobes lobes() const override { return Lobes::both; }
   Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
     if (!(wo.z > 0 && wi.z > 0)) return {};
     const float t = (1 - fresnel(wo.z, p.eta).reflectance) * (1 - fresnel(wi.z, p.eta).reflectance);
@@ -58,13 +60,14 @@ struct SmoothPlastic final : Scattering {
     if (!(wo.z > 0 && wi.z > 0)) return 0;
     return (1 - chance(fresnel(wo.z, p.eta).reflectance)) * cosine_pdf(wi);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float reflectance = fresnel(wo.z, p.eta).reflectance, specular = chance(reflectance);
+    const float u1 = to_unit_float(u()), u2 = to_unit_float(u());
     if (to_unit_float(u()) < specular) {
       return Scattered{mirrored(wo), 0, (reflectance / specular) * eval(p.specular, uv), true};
     }
-    const Direction wi = cosine_direction(u);
+    const Direction wi = cosine_direction(u1, u2);
     const float density = (1 - specular) * cosine_pdf(wi);
     if (!(density > 0)) return std::nullopt;
     return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};
@@ -78,12 +81,19 @@ struct Glass final : Scattering {
   Texture reflectance, transmittance;
   Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
+  Lobes lobes() const override { return Lobes::delta; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const override {
+  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const Dielectric f = fresnel(wo.z, eta);
-    if (to_unit_float(u()) < f.reflectance) return Scattered{mirrored(wo), 0, eval(reflectance, uv), true};
-    const Direction wi{-wo.x / f.eta, -wo.y / f.eta, f.cos_theta_t};
-    return Scattered{wi, 0, (1 / (f.eta * f.eta)) * eval(transmittance, uv), true};
+    return scatter(wo, uv, f, 1 / (f.eta * f.eta), u);
+  }
+  // Power is not squeezed.
+  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+    return scatter(wi, uv, fresnel(wi.z, eta), 1, u);
+  }
+  Scattered scatter(Direction w, Uv uv, const Dielectric& f, float squeeze, PathBits& u) const {
+    if (to_unit_float(u()) < f.reflectance) return {mirrored(w), 0, eval(reflectance, uv), true};
+    return {{-w.x / f.eta, -w.y / f.eta, f.cos_theta_t}, 0, squeeze * eval(transmittance, uv), true};
   }
 };
 

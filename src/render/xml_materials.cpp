@@ -68,12 +68,17 @@ Plastic MaterialReader::plastic_of(Node n) {
 }
 
 ScatteringPtr MaterialReader::with_sampler(const AnyBrdf& f, const std::string& text) {
-  const std::string& name = xml_.options().sampler;
-  const SamplerInfo* info = find_sampler(name);
-  if (!info) throw Error("no sampler '" + name + "'", "--sampler", "'exact' and 'one-shot' are ours");
-  auto sampler = info->make({f, text.empty() ? Material{} : parse_material(text), {}}, host_);
-  if (!sampler) throw Error("'" + name + "' does not take this material", "--sampler", "choose another");
-  return sampled(f, std::move(*sampler));
+  const auto make = [&](const std::string& name, const char* option, const PeerSubject& subject) {
+    const SamplerInfo* info = find_sampler(name);
+    if (!info) throw Error("no sampler '" + name + "'", option, "'exact' and 'one-shot' are ours");
+    auto sampler = info->make(subject, host_);
+    if (!sampler) throw Error("'" + name + "' does not take this material", option, "choose another");
+    return std::move(*sampler);
+  };
+  const SceneOptions& o = xml_.options();
+  auto sampler = make(o.sampler, "--sampler", {f, text.empty() ? Material{} : parse_material(text), {}});
+  if (o.adjoint.empty()) return sampled(f, std::move(sampler));
+  return sampled(f, std::move(sampler), make(o.adjoint, "--adjoint", {adjoint_of(f), Material{}, {}}));
 }
 
 ScatteringPtr MaterialReader::from_text(Node n) {

@@ -35,13 +35,27 @@ class SceneReader {
 
  private:
   void read_integrator(Node n) {
-    if (XmlReader::type(n) == "direct") {
-      xml_.only(n, {});
-      scene_.max_depth = 2;
+    const auto method = method_of(XmlReader::type(n));
+    if (!method) xml_.unknown(n);
+    Transport& t = scene_.transport;
+    t.method = *method;
+    if (t.method == Transport::Method::direct) {
+      xml_.only(n, {"shading_samples"});
+      t.split = int(xml_.property(n, "shading_samples", 0));
       return;
     }
-    if (XmlReader::type(n) != "path") xml_.unknown(n);
-    xml_.only(n, {"max_depth", "rr_depth"});
+    if (t.method == Transport::Method::photons) {
+      xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather"});
+      t.photons.count = int(xml_.property(n, "photon_count", 0));
+      t.photons.radius = float(xml_.property(n, "radius", 0));
+      t.photons.shrink = float(xml_.property(n, "alpha", 2 / 3.));
+      t.photons.gather = xml_.flag(n, "final_gather", true);
+    } else if (t.method == Transport::Method::path) {
+      xml_.only(n, {"max_depth", "rr_depth"});
+    } else {
+      xml_.only(n, {"max_depth", "rr_depth", "split"});
+    }
+    t.split = int(xml_.property(n, "split", 0));
     scene_.max_depth = int(xml_.property(n, "max_depth", -1));
     scene_.rr_depth = int(xml_.property(n, "rr_depth", 5));
   }
@@ -70,7 +84,12 @@ class SceneReader {
               {"fov", "fov_axis", "near_clip", "far_clip", "focus_distance", "to_world", "sampler", "film"});
     const Node film = n.child("film"), sampler = n.child("sampler");
     if (XmlReader::type(film) != "hdrfilm") xml_.unknown(film ? film : n);
-    if (sampler && XmlReader::type(sampler) != "independent") xml_.unknown(sampler);
+    if (sampler) {
+      const auto points = points_of(XmlReader::type(sampler));
+      if (!points) xml_.unknown(sampler);
+      xml_.only(sampler, {"sample_count", "seed"});  // the seed is the command's
+      scene_.points.kind = *points;
+    }
     xml_.only(film, {"width", "height", "rfilter", "pixel_format"});
     read_filter(film.child("rfilter"));
     const double width = xml_.property(film, "width", 768), height = xml_.property(film, "height", 576);
@@ -136,6 +155,23 @@ class SceneReader {
 };
 
 }  // namespace
+
+std::optional<Transport::Method> method_of(std::string_view name) {
+  using Method = Transport::Method;
+  if (name == "path") return Method::path;
+  if (name == "direct") return Method::direct;
+  if (name == "recursive") return Method::recursive;
+  if (name == "photons") return Method::photons;
+  return std::nullopt;
+}
+
+std::optional<PointSet::Kind> points_of(std::string_view name) {
+  using Kind = PointSet::Kind;
+  if (name == "independent") return Kind::independent;
+  if (name == "stratified") return Kind::stratified;
+  if (name == "sobol" || name == "ldsampler") return Kind::sobol;
+  return std::nullopt;
+}
 
 Scene parse_scene(std::string_view xml, const std::string& path, const SceneOptions& options,
                   const Host& host) {

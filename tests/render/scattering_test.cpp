@@ -51,7 +51,7 @@ TEST(Scattering, SamplesDensitiesAndValuesAgree) {
       const Direction wo = direction_from_angles(theta, .7f);
       const Integrals exact = integrate(*material, wo);
       double sum = 0, squares = 0, drawn = 0;
-      Pcg32 u(7);
+      PathBits u(Pcg32(7));
       constexpr int n = 200000;
       for (int i = 0; i < n; ++i) {
         const auto s = material->sample(wo, {}, u);
@@ -70,7 +70,7 @@ TEST(Scattering, SamplesDensitiesAndValuesAgree) {
 }
 
 TEST(Scattering, GlassAndMirrorsKeepEnergy) {
-  Pcg32 u(3);
+  PathBits u(Pcg32(3));
   const auto glass = dielectric(1.5f, white, white);
   for (const float z : {.9f, .3f, -.9f, -.3f}) {
     const Direction wo{std::sqrt(1 - z * z), 0, z};
@@ -93,7 +93,7 @@ TEST(Scattering, GlassAndMirrorsKeepEnergy) {
 
 // A plastic's delta and its ground together: under a white sky, what is not reflected enters and leaves.
 TEST(Scattering, SmoothPlasticOfWhiteGroundReflectsAll) {
-  Pcg32 u(5);
+  PathBits u(Pcg32(5));
   const auto p = plastic({.eta = 1.5f, .diffuse = white, .nonlinear = true});
   double sum = 0;
   constexpr int n = 400000;

@@ -25,6 +25,12 @@ std::uint32_t owen_scramble(std::uint32_t bits, std::uint32_t seed);
 // The scrambled coordinate as a 32-bit fraction, for any dimension.
 std::uint32_t scrambled_sobol_bits(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed);
 
+// The same in two steps, where several coordinates of a block of four are wanted: the point of the sequence
+// that the block visits, and its coordinate; dimension / 4 == block.
+std::uint32_t sobol_index_in_block(std::uint32_t index, std::uint32_t block, std::uint32_t seed);
+std::uint32_t scrambled_sobol_in_block(std::uint32_t index_in_block, std::uint32_t dimension,
+                                       std::uint32_t seed);
+
 // The same in [0, 1).
 inline double scrambled_sobol(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
   return double(scrambled_sobol_bits(index, dimension, seed)) * 0x1p-32;

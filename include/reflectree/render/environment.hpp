@@ -11,7 +11,7 @@
 #include "reflectree/brdf/value.hpp"
 #include "reflectree/io/image.hpp"
 #include "reflectree/math/frame.hpp"
-#include "reflectree/math/random.hpp"
+#include "reflectree/render/path_bits.hpp"
 
 namespace reflectree::render {
 
@@ -24,7 +24,7 @@ class Environment {
   // `direction` points away from the scene.
   Rgb radiance(Direction direction) const;
   float pdf(Direction direction) const;
-  Direction sample(Pcg32& u) const;
+  Direction sample(PathBits& u) const;
 
  private:
   struct Cell {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures from many samples a pixel, in passes: a render can stop after any of them, be saved, and go on.
-// A sample's random numbers depend on seed, pixel and sample alone: the picture is the same for any number of
-// threads, passes and interruptions.
+// A sample's random bits depend on seed, pixel, sample and point set alone: the picture is the same for any
+// number of threads, passes and interruptions. The strata of stratified points are as many as the samples
+// that the first render was asked for, columns by rows; the film keeps them.
 #pragma once
 
 #include "reflectree/io/image.hpp"
-#include "reflectree/render/path_tracer.hpp"
+#include "reflectree/render/integrator.hpp"
 
 namespace reflectree::render {
 
@@ -20,6 +21,7 @@ struct RenderOptions {
 struct Film {
   int width = 0, height = 0, samples = 0;
   std::uint64_t seed = 1;
+  PointSet points;
   std::vector<double> sums;  // [pixel][r, g, b, r^2, g^2, b^2]
 };
 
@@ -27,7 +29,8 @@ struct Film {
 // what `options` ask for. False where the host cancelled: `film` then holds the whole passes before.
 bool render_into(Film& film, const Scene& scene, const RenderOptions& options, const Host& host = {});
 
-// Channels R, G, B and stderr.R, stderr.G, stderr.B, the standard error of each pixel's mean.
+// Channels R, G, B and stderr.R, stderr.G, stderr.B, the standard error of each pixel's mean, too
+// large for stratified and Sobol' points: it takes samples for independent.
 Image to_image(const Film& film);
 
 // Throws Error for a file that is damaged.

@@ -19,7 +19,7 @@ class Lights {
  public:
   explicit Lights(const Scene& scene);  // holds a reference
 
-  std::optional<LightSample> sample(Point at, Pcg32& u) const;
+  std::optional<LightSample> sample(Point at, PathBits& u) const;
   // Density with which `sample` finds what a ray from `at` has hit; 0 for what does not shine.
   float pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const;
   float pdf_of_environment(Direction direction) const;

@@ -5,20 +5,26 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "reflectree/brdf/any_brdf.hpp"
-#include "reflectree/math/random.hpp"
+#include "reflectree/render/path_bits.hpp"
 #include "reflectree/render/texture.hpp"
 #include "reflectree/sampler/any_sampler.hpp"
 
 namespace reflectree::render {
 
+inline constexpr std::size_t max_split = 64;  // of directions drawn at once
+
 struct Scattered {
-  Direction wi;
-  float pdf;   // per solid angle; 0 for a delta: nothing competes with it
-  Rgb weight;  // f |cos| / pdf
+  Direction wi{};
+  float pdf = 0;  // per solid angle; 0 for a delta: nothing competes with it
+  Rgb weight{};   // f |cos| / pdf
   bool delta = false;
 };
+
+// What a function is made of.
+enum class Lobes : std::uint8_t { finite, delta, both };
 
 // Directions are local to the shading frame; wo.z < 0 is the back.
 class Scattering {
@@ -28,7 +34,16 @@ class Scattering {
   virtual Rgb f_cos(Direction wo, Direction wi, Uv uv) const = 0;
   // Density of `sample`, without deltas.
   virtual float pdf(Direction wo, Direction wi, Uv uv) const = 0;
-  virtual std::optional<Scattered> sample(Direction wo, Uv uv, Pcg32& u) const = 0;
+  virtual std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const = 0;
+  // One direction for each of `u`, whose bits stand at its decision; returns how many were filled, with their
+  // bits moved to the front. A mean over the directions is a sum over those filled divided by u.size().
+  virtual std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const;
+  // For light that is known to come from `wi`: a direction wo in which it goes on, in the sample's `wi`, with
+  // weight f(wo, wi) |cos_theta_o| / pdf: the adjoint f*(wo, wi) = f(wi, wo) (Veach 1997, 3.7.5), since
+  // functions are not reciprocal. By default drawn as `sample` would, were wi the viewer's direction.
+  virtual std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const;
+  virtual Lobes lobes() const { return Lobes::finite; }
+  bool only_delta() const { return lobes() == Lobes::delta; }
   // False for a method without a density: lights are left to its own directions.
   virtual bool has_pdf() const { return true; }
 };
@@ -54,7 +69,12 @@ ScatteringPtr plastic(Plastic parameters);
 ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness);
 ScatteringPtr dielectric(float eta, Texture reflectance, Texture transmittance);
 // A function above the surface with a sampler of it, ours or any other.
-ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler);
+// Light's side is drawn by `adjoint`, a sampler of the swapped function; without one, by `sampler` and a
+// tenth of a cosine lobe, which reaches what the ordinary sampler may miss.
+ScatteringPtr sampled(AnyBrdf f, AnySampler<Spectrum> sampler,
+                      std::optional<AnySampler<Spectrum>> adjoint = std::nullopt);
+// f with its directions swapped: what a sampler of light's side is made of.
+AnyBrdf adjoint_of(AnyBrdf f);
 ScatteringPtr two_sided(ScatteringPtr front, ScatteringPtr back);
 // (1 - weight) a + weight b.
 ScatteringPtr blend(Texture weight, ScatteringPtr a, ScatteringPtr b);

@@ -66,6 +66,18 @@ struct Filter {
   float width = .5f;  // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
 };
 
+// How light is to be computed.
+struct Transport {
+  enum class Method { path, direct, recursive, photons } method = Method::path;
+  int split = 0;  // directions at a hit, photons' gathering and direct light included; 0: the method's own
+  struct Photons {
+    int count = 0;           // of light paths a pass; 0: as many as pixels
+    float radius = 0;        // within which the first pass looks for photons; 0: a few pixels wide
+    float shrink = 2 / 3.f;  // alpha of the progressive radius; 1: it stays
+    bool gather = true;      // final gathering: indirect light is looked up one bounce away
+  } photons;
+};
+
 struct Scene {
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
@@ -78,6 +90,8 @@ struct Scene {
   Camera camera;
   Filter filter;
   int width = 0, height = 0, samples = 16;
+  PointSet points;
+  Transport transport;
   int max_depth = 8;  // path edges, as in Mitsuba; -1: no limit
   int rr_depth = 5;
 };
@@ -85,7 +99,12 @@ struct Scene {
 struct SceneOptions {
   std::map<std::string, std::string> defines;  // $name
   std::string sampler = "one-shot";            // of reflectree::samplers(): "reflectree" and "measured"
+  std::string adjoint = "";  // of light's side, for photons; "": the same and a cosine lobe, see sampled()
 };
+
+// Their names, in scenes and on the command line; "ldsampler", Mitsuba's word, is sobol.
+std::optional<Transport::Method> method_of(std::string_view name);
+std::optional<PointSet::Kind> points_of(std::string_view name);
 
 // Throws Error, naming line and column.
 Scene load_scene(const std::string& path, const SceneOptions& options = {}, const Host& host = {});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// AnySampler: a sampler of directions chosen at run time, ours or a peer's. A value (shared, immutable inside).
+// AnySampler: a sampler of directions chosen at run time, ours or a peer's. A value (shared, immutable
+// inside).
 #pragma once
 
 #include <memory>
@@ -25,8 +26,7 @@ class AnySampler {
 
   // `bytes`: what the sampler holds in memory besides the function.
   template <DirectionSampler S>
-  requires std::same_as<typename S::Value, V>
-  AnySampler(std::string name, S sampler, std::size_t bytes = 0)
+  requires std::same_as<typename S::Value, V> AnySampler(std::string name, S sampler, std::size_t bytes = 0)
       : self_(std::make_shared<const Model<S>>(std::move(name), bytes, std::move(sampler))) {}
 
   const std::string& name() const { return self_->name; }
@@ -45,6 +45,8 @@ class AnySampler {
   std::size_t sample_n(Direction wo, UniformBits& u, std::span<DirectionSample<V>> out) const {
     return self_->sample_n(wo, u, out);
   }
+  // Whether it divides N directions itself, rather than drawing one after the other.
+  bool divides() const { return self_->divides; }
   bool has_pdf() const { return self_->has_pdf; }
   // Per solid angle, sr^-1; 0 for a method without a density.
   float pdf(Direction wo, Direction wi) const { return self_->pdf(wo, wi); }
@@ -53,7 +55,7 @@ class AnySampler {
   struct Interface {
     std::string name;
     std::size_t bytes = 0;
-    bool has_pdf = false;
+    bool has_pdf = false, divides = false;
     virtual ~Interface() = default;
     virtual std::optional<DirectionSample<V>> sample(Direction, UniformBits&) const = 0;
     virtual std::size_t sample_n(Direction, UniformBits&, std::span<DirectionSample<V>>) const = 0;
@@ -64,6 +66,7 @@ class AnySampler {
     S sampler;
     Model(std::string the_name, std::size_t the_bytes, S s) : sampler(std::move(s)) {
       this->name = std::move(the_name), this->bytes = the_bytes, this->has_pdf = DensitySampler<S>;
+      this->divides = ManyDirectionsSampler<S>;
     }
     std::optional<DirectionSample<V>> sample(Direction wo, UniformBits& u) const override {
       return sampler.sample(wo, u);

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/render/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reflectree::render {
+
+namespace {
+float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
+}  // namespace
+
+float heuristic(Technique technique, float own, float other) {
+  if (technique != Technique::power) return own / (own + other);
+  const float ratio = other / own;
+  return 1 / (1 + ratio * ratio);
+}
+
+PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
+    : on(interaction_at(scene, hit, origin, direction)),
+      frame(frame_from_normal(on.shading)),
+      wo(to_local(frame, -direction)),
+      surface(&scene.surfaces[on.surface]) {}
+
+World::World(const Scene& s) : scene(s), embree(s), lights(s) {
+  for (const Vertex& v : scene.vertices) extent = std::max(extent, largest(v.at));
+  for (const Sphere& sphere : scene.spheres) extent = std::max(extent, float(sphere.radius));
+}
+
+float World::near(Point at) const { return 5e-5f * std::max(largest(at), .01f * extent); }
+
+bool World::sees(Point at, Direction direction, float distance) const {
+  const float start = near(at);
+  const float end = std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start;
+  return !embree.occluded(at, direction, start, end);
+}
+
+Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
+  const auto light = lights.sample(at.on.at, u);
+  if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
+  const Direction wi = to_local(at.frame, light->direction);
+  const Rgb arriving = at.scattering().f_cos(at.wo, wi, at.on.uv) * light->radiance;
+  if (arriving == Rgb{} || !sees(at.on.at, light->direction, light->distance)) return {};
+  const bool alone = light->delta || technique == Technique::light;
+  const float share = alone ? 1 : heuristic(technique, light->pdf, at.scattering().pdf(at.wo, wi, at.on.uv));
+  return (share / light->pdf) * arriving;
+}
+
+}  // namespace reflectree::render
