@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same picture by every sampler: at equal samples and at equal time, against a converged one. Time is CPU
-// time of one thread, so that what else the machine does counts for little. Prints Markdown; writes the
-// pictures and maps of error of the first scene into the folder named first, and after --scene NAME does that
-// scene alone. Measured data is that of REFLECTREE_DATA.
+// time of one thread, so that what else the machine does counts for little. Prints Markdown; writes a few
+// pictures of the first scene and their maps of error into the folder named first. After --scene NAME that
+// scene alone is done. Measured data is that of REFLECTREE_DATA.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -92,7 +92,9 @@ Error2 relative_error(const Image& a, const Image& b) {
 
 void save(const Options& o, const Shot& shot, const std::string& name, const Image& image,
           const Image* reference) {
+  constexpr const char* shown[] = {"reference", "cosine", "proxy", "paper", "exact", "one-shot"};
   if (o.folder.empty() || &shot != &shots[0]) return;
+  if (std::find(std::begin(shown), std::end(shown), name) == std::end(shown)) return;
   const std::string path = o.folder + "/pictures-" + name;
   write_png(path + ".png", image);
   if (reference) write_png(path + "-error.png", render::difference_map(image, *reference, 2, 0.5));
@@ -136,6 +138,15 @@ void show(const Options& o, const Shot& shot) {
     std::fflush(stdout);
   }
   std::printf("\n");
+  if (&shot != &shots[0]) return;
+  std::printf(
+      "The converged picture, then %d samples of each with the map of errors, red where it is too bright, "
+      "blue "
+      "where too dark, full at 50 %%.\n\n![converged](pictures-reference.png)\n\n",
+      samples);
+  for (const char* name : {"cosine", "proxy", "paper", "exact", "one-shot"})
+    std::printf("%s\n\n![%s](pictures-%s.png) ![error of %s](pictures-%s-error.png)\n\n", name, name, name,
+                name, name);
 }
 
 }  // namespace

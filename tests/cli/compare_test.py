@@ -49,10 +49,9 @@ class Compare(ProgramTest):
         self.assert_error("differ in samplers;", *TWO[:4], "--theta-o-deg", "20", "--resume", "kept")
         path = next((self.folder / "kept").iterdir())
         kept = json.loads(path.read_text(encoding="utf-8"))
-        for setting in ("commit", "machine", "version"):
-            changed = {**kept, "made_by": {**kept["made_by"], setting: "another"}}
-            path.write_text(json.dumps(changed), encoding="utf-8")
-            self.assert_error(f"differ in {setting};", *TWO, "--resume", "kept")
+        other = {setting: "another" for setting in ("commit", "version", "machine")}
+        path.write_text(json.dumps({**kept, "made_by": {**kept["made_by"], **other}}), encoding="utf-8")
+        self.assert_error("differ in commit, version, machine;", *TWO, "--resume", "kept")
         path.write_text(json.dumps(kept), encoding="utf-8")
         self.run_program(*TWO, "--resume", "kept")  # the twin: unchanged, it is taken up
         path.write_text("{")
