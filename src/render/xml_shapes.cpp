@@ -77,6 +77,7 @@ void add_sphere(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::u
 
 void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& scene) {
   Surface surface{nullptr, {}};
+  bool shines = false;
   for (const Node c : n.children()) {
     const Node meant = xml.resolve(c);
     const std::string_view tag = meant.name();
@@ -84,10 +85,13 @@ void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& 
     if (tag == "emitter") {
       if (XmlReader::type(meant) != "area") xml.unknown(meant);
       xml.only(meant, {"radiance"});
+      shines = true;
       surface.radiance = xml.colour(meant, "radiance", {1, 1, 1}, false);
     }
   }
-  if (!surface.scattering) surface.scattering = diffuse({{.5f, .5f, .5f}, nullptr});
+  // As in Mitsuba, what shines and names no material is black, and whatever else names none is grey.
+  const Rgb grey{.5f, .5f, .5f};
+  if (!surface.scattering) surface.scattering = diffuse({shines ? Rgb{} : grey, nullptr});
   const auto index = std::uint32_t(scene.surfaces.size());
   scene.surfaces.push_back(std::move(surface));
 
