@@ -33,8 +33,8 @@ Rgb whole(const Environment& sky) {
   Rgb total;
   PathBits u(Pcg32(1));
   for (int i = 0; i < n; ++i) {
-    const Direction d = sky.sample(u);
-    if (const float pdf = sky.pdf(d); pdf > 0) total = total + (1 / (pdf * n)) * sky.radiance(d);
+    const auto light = sky.sample(u).light;
+    if (light.pdf > 0) total = total + (1 / (light.pdf * n)) * light.radiance;
   }
   return total;
 }
@@ -137,9 +137,9 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
       break;
     }
     case Source::Kind::environment: {
-      const Direction d = scene_.environment->sample(u);
+      const auto [d, light] = scene_.environment->sample(u);
       u.begin(1, Decision::light);
-      e = from_far(-d, (1 / scene_.environment->pdf(d)) * scene_.environment->radiance(d), u);
+      e = from_far(-d, (1 / light.pdf) * light.radiance, u);
       break;
     }
   }

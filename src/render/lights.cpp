@@ -119,8 +119,8 @@ std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
       break;
     }
     case Light::Kind::environment: {
-      const Direction d = scene_.environment->sample(u);
-      s = LightSample{d, far_away, scene_.environment->pdf(d), false, scene_.environment->radiance(d)};
+      const auto drawn = scene_.environment->sample(u);
+      s = LightSample{drawn.direction, far_away, drawn.light.pdf, false, drawn.light.radiance};
       break;
     }
   }
@@ -141,8 +141,9 @@ float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interacti
   return share * hit.distance * hit.distance / (cosine * float(area));
 }
 
-float Lights::pdf_of_environment(Direction direction) const {
-  return scene_.environment->pdf(direction) / float(lights_.size());
+Environment::Light Lights::environment(Direction direction) const {
+  const auto light = scene_.environment->at(direction);
+  return {light.radiance, light.pdf / float(lights_.size())};
 }
 
 }  // namespace reflectree::render

@@ -22,8 +22,8 @@ Rgb PathTracer::radiance(Point origin, Direction direction, PathBits& u) const {
     const auto hit = world_.embree.intersect(origin, direction, depth == 1 ? 0 : world_.near(origin));
     if (!hit) {
       if (!scene.environment) return result;
-      const float other = drawn_pdf > 0 ? world_.lights.pdf_of_environment(direction) : 0;
-      return result + share(other) * (throughput * scene.environment->radiance(direction));
+      const auto [radiance, other] = world_.lights.environment(direction);
+      return result + share(other) * (throughput * radiance);
     }
     const PathVertex at(scene, *hit, origin, direction);
     if (const Rgb emitted = at.emitted(); emitted != Rgb{}) {

@@ -146,8 +146,9 @@ Rgb PhotonMapper::beyond(const PathVertex& at, const Scattered& next, int depth,
   const auto share = [&](float other) { return competes ? heuristic(technique_, next.pdf, other) : 1.f; };
   const auto hit = world_.embree.intersect(at.on.at, direction, world_.near(at.on.at));
   if (!hit) {
-    const auto& sky = world_.scene.environment;
-    return sky ? share(world_.lights.pdf_of_environment(direction)) * sky->radiance(direction) : Rgb{};
+    if (!world_.scene.environment) return {};
+    const auto [radiance, other] = world_.lights.environment(direction);
+    return share(other) * radiance;
   }
   const PathVertex y(world_.scene, *hit, at.on.at, direction);
   Rgb result = y.emitted();

@@ -32,8 +32,8 @@ Rgb RecursiveTracer::arriving(const Ray& ray, PathBits& u) const {
   const auto hit = world_.embree.intersect(ray.origin, ray.direction, near);
   if (!hit) {
     if (!world_.scene.environment) return {};
-    const float other = ray.drawn_pdf > 0 ? world_.lights.pdf_of_environment(ray.direction) : 0;
-    return share(other) * world_.scene.environment->radiance(ray.direction);
+    const auto [radiance, other] = world_.lights.environment(ray.direction);
+    return share(other) * radiance;
   }
   const PathVertex at(world_.scene, *hit, ray.origin, ray.direction);
   Rgb result = at.emitted();

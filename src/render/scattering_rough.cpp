@@ -31,9 +31,11 @@ struct RoughConductor final : Scattering {
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wh = normals.sample(wo, u), wi = reflect(wo, wh);
-    const float density = pdf(wo, wi, uv);
-    if (!(wi.z > 0) || !(dot(wo, wh) > 0) || !(density > 0)) return std::nullopt;
-    return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};
+    const float cosine = dot(wo, wh), density = normals.pdf(wo, wh) / (4 * cosine);
+    if (!(wi.z > 0) || !(cosine > 0) || !(density > 0)) return std::nullopt;
+    const Rgb reflected = eval(specular, uv) * fresnel_conductor(cosine, eta, k);
+    const float common = normals.d(wh) * normals.g1(wo) * normals.g1(wi) / (4 * wo.z);
+    return Scattered{wi, density, (common / density) * reflected};
   }
 };
 

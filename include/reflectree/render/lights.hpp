@@ -22,7 +22,8 @@ class Lights {
   std::optional<LightSample> sample(Point at, PathBits& u) const;
   // Density with which `sample` finds what a ray from `at` has hit; 0 for what does not shine.
   float pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const;
-  float pdf_of_environment(Direction direction) const;
+  // What the environment sends, and the density with which `sample` finds it.
+  Environment::Light environment(Direction direction) const;
 
  private:
   struct Light {
