@@ -161,7 +161,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) {
 }
 
 std::optional<Hit> EmbreeScene::intersect(Point origin, Direction direction, float near) const {
-  RTCRayHit query{};
+  RTCRayHit query;
   query.ray = ray_from(origin, direction, near, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;

@@ -102,7 +102,7 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
   const auto leaving = [&](Hit::Kind kind, float size, float a, float b, Point origin, Direction towards) {
     const Interaction on = interaction_at(scene_, {kind, index, 1, a, b}, origin, towards);
     u.begin(1, Decision::light);
-    const Direction d = to_world(frame_from_normal(on.normal), cosine_direction(u));
+    const Direction d = to_world(frame_from_normal(on.normal()), cosine_direction(u));
     const Rgb radiance = dot(on.shading, d) > 0 ? scene_.surfaces[on.surface].radiance : Rgb{};
     return Emitted{on.at, d, (pi * size) * radiance, true};
   };

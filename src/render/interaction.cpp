@@ -12,10 +12,10 @@ Interaction on_triangle(const Scene& scene, const Hit& hit) {
   const Vertex &a = scene.vertices[t.corner[0]], &b = scene.vertices[t.corner[1]],
                &c = scene.vertices[t.corner[2]];
   const float w = 1 - hit.u - hit.v;
-  const Direction own = normalize(cross(b.at - a.at, c.at - a.at));
+  const Direction own = cross(b.at - a.at, c.at - a.at);
   const Direction smooth = w * a.normal + hit.u * b.normal + hit.v * c.normal;
-  const float size = length(smooth);
-  const Direction shading = size > 1e-6f ? (1 / size) * smooth : own;
+  const float size2 = dot(smooth, smooth);
+  const Direction shading = size2 > 1e-12f ? (1 / std::sqrt(size2)) * smooth : normalize(own);
   return {w * a.at + hit.u * b.at + hit.v * c.at,
           dot(own, shading) < 0 ? -own : own,
           shading,

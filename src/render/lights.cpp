@@ -90,7 +90,7 @@ std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
       const float root = std::sqrt(to_unit_float(u())), c = root * to_unit_float(u());
       const Hit hit{Hit::Kind::triangle, light.parts[std::size_t(i)], 0, root - c, c};
       const Interaction on = interaction_at(scene_, hit, {}, {});
-      s = sample_area(at, on.at, on.normal, light.cdf.back(), scene_.surfaces[light.index].radiance);
+      s = sample_area(at, on.at, on.normal(), light.cdf.back(), scene_.surfaces[light.index].radiance);
       break;
     }
     case Light::Kind::sphere: {
@@ -130,7 +130,7 @@ std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
 
 float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const {
   if (!shines(scene_.surfaces[on.surface].radiance)) return 0;
-  const float cosine = -dot(on.normal, direction), share = 1 / float(lights_.size());
+  const float cosine = -dot(on.normal(), direction), share = 1 / float(lights_.size());
   if (!(cosine > 0)) return 0;
   if (hit.kind == Hit::Kind::sphere) {
     const Sphere& s = scene_.spheres[hit.index];

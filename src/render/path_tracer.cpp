@@ -42,7 +42,7 @@ Rgb PathTracer::radiance(Point origin, Direction direction, PathBits& u) const {
     if (!next) return result;
     throughput = throughput * next->weight;
     drawn_pdf = competes && !next->delta ? next->pdf : 0;
-    origin = at.on.at, direction = normalize(to_world(at.frame, next->wi));
+    origin = at.on.at, direction = to_world(at.frame, next->wi);
     if (!(largest(throughput) > 0)) return result;
     if (depth >= scene.rr_depth) {  // Russian roulette by the largest channel
       u.begin(depth, Decision::survival);

@@ -30,7 +30,7 @@ void trace(const World& world, const Emission& emission, float share, PathBits& 
     if (!hit) return;
     const PathVertex at(world.scene, *hit, origin, direction);
     const Scattering& scattering = at.scattering();
-    const float cosine = std::abs(dot(at.on.normal, direction));
+    const float cosine = std::abs(dot(at.on.normal(), direction));
     if (!scattering.only_delta() && cosine > 1e-6f)
       out.push_back({at.on.at, -direction, (1 / cosine) * power, std::uint16_t(edges), edges > 1 && deltas});
     u.begin(edges, Decision::surface);
@@ -39,7 +39,7 @@ void trace(const World& world, const Emission& emission, float share, PathBits& 
     direction = normalize(to_world(at.frame, next->wi));
     // Where shading and true normals differ, |cos_s wi cos_g wo / (cos_g wi cos_s wo)| keeps to what a path
     // from the camera finds (Veach 1997, 5.3.2); here at.wo is where light comes from.
-    const float turned = std::abs(at.wo.z * dot(at.on.normal, direction)),
+    const float turned = std::abs(at.wo.z * dot(at.on.normal(), direction)),
                 over = std::abs(next->wi.z) * cosine;
     if (!(over > 0)) return;
     const Rgb weight = (turned / over) * next->weight;

@@ -67,28 +67,35 @@ struct RoughPlastic final : Scattering {
     const float t = transmittance(wo.z), s = (1 - t) * specular_weight, d = t * (1 - specular_weight);
     return s + d > 0 ? s / (s + d) : 1;
   }
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
-    if (!(wo.z > 0 && wi.z > 0)) return {};
-    const Direction wh = normalize(wo + wi);
+  // For both directions above the surface.
+  Rgb f_cos_about(Direction wh, Direction wo, Direction wi, Uv uv) const {
     const float gloss = fresnel(dot(wo, wh), p.eta).reflectance * normals.d(wh) * normals.g1(wo) *
                         normals.g1(wi) / (4 * wo.z);
     const float t = transmittance(wo.z) * transmittance(wi.z) * cosine_pdf(wi) / (p.eta * p.eta);
     return gloss * eval(p.specular, uv) + t * ground(eval(p.diffuse, uv), inside, p.nonlinear);
   }
+  float pdf_about(Direction wh, Direction wo, Direction wi, float specular) const {
+    return specular * normals.pdf(wo, wh) / (4 * dot(wo, wh)) + (1 - specular) * cosine_pdf(wi);
+  }
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
+    if (!(wo.z > 0 && wi.z > 0)) return {};
+    return f_cos_about(normalize(wo + wi), wo, wi, uv);
+  }
   float pdf(Direction wo, Direction wi, Uv) const override {
     if (!(wo.z > 0 && wi.z > 0)) return 0;
-    const Direction wh = normalize(wo + wi);
-    const float specular = chance(wo);
-    return specular * normals.pdf(wo, wh) / (4 * dot(wo, wh)) + (1 - specular) * cosine_pdf(wi);
+    return pdf_about(normalize(wo + wi), wo, wi, chance(wo));
   }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float u1 = to_unit_float(u()), u2 = to_unit_float(u());  // first, for points that are a net in two
+    const float specular = chance(wo);
     const Direction wi =
-        to_unit_float(u()) < chance(wo) ? reflect(wo, normals.sample(wo, u1, u2)) : cosine_direction(u1, u2);
-    const float density = pdf(wo, wi, uv);
+        to_unit_float(u()) < specular ? reflect(wo, normals.sample(wo, u1, u2)) : cosine_direction(u1, u2);
+    if (!(wi.z > 0)) return std::nullopt;
+    const Direction wh = normalize(wo + wi);
+    const float density = pdf_about(wh, wo, wi, specular);
     if (!(density > 0)) return std::nullopt;
-    return Scattered{wi, density, (1 / density) * f_cos(wo, wi, uv)};
+    return Scattered{wi, density, (1 / density) * f_cos_about(wh, wo, wi, uv)};
   }
 };
 

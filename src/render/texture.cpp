@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/render/texture.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace reflectree::render {
@@ -9,23 +10,31 @@ namespace {
 
 // Pictures are grey, or begin with red, green and blue.
 Rgb texel(const Image& p, int x, int y) {
-  const auto wrapped = [](int i, int n) { return (i % n + n) % n; };
-  const float* v = p.values.data() + p.index(wrapped(x, p.width), wrapped(y, p.height));
+  const float* v = p.values.data() + p.index(x, y);
   return p.channels.size() < 3 ? to_rgb(v[0]) : Rgb{v[0], v[1], v[2]};
+}
+
+// The texels on both sides of a place in [0, n], and how far it is from the first one's centre.
+struct Between {
+  int a, b;
+  float t;
+};
+Between between(float at, int n) {
+  const float x = at + .5f;  // not negative: what is cut off is the fraction
+  const int after = int(x);
+  return {after == 0 ? n - 1 : after - 1, after >= n ? 0 : after, x - float(after)};
 }
 
 }  // namespace
 
-Rgb eval(const Texture& texture, Uv uv) {
-  if (!texture.picture) return texture.colour;
+Rgb eval_picture(const Texture& texture, Uv uv) {
   const Image& p = *texture.picture;
   const float u = (uv.x - std::floor(uv.x)) * float(p.width);
   const float v = (uv.y - std::floor(uv.y)) * float(p.height);
-  if (texture.nearest) return texel(p, int(u), int(v));
-  const float x = std::floor(u - .5f), y = std::floor(v - .5f), s = u - .5f - x, t = v - .5f - y;
-  const int i = int(x), j = int(y);
-  return (1 - t) * ((1 - s) * texel(p, i, j) + s * texel(p, i + 1, j)) +
-         t * ((1 - s) * texel(p, i, j + 1) + s * texel(p, i + 1, j + 1));
+  if (texture.nearest) return texel(p, std::min(int(u), p.width - 1), std::min(int(v), p.height - 1));
+  const Between x = between(u, p.width), y = between(v, p.height);
+  return (1 - y.t) * ((1 - x.t) * texel(p, x.a, y.a) + x.t * texel(p, x.b, y.a)) +
+         y.t * ((1 - x.t) * texel(p, x.a, y.b) + x.t * texel(p, x.b, y.b));
 }
 
 Rgb mean(const Texture& texture) {

@@ -29,10 +29,11 @@ class EmbreeScene {
 // What lies at a hit.
 struct Interaction {
   Point at;
-  Direction normal;   // of the surface itself, on the side of `shading`
+  Direction face;     // along the normal of the surface itself, on the side of `shading`; of any length
   Direction shading;  // decides what is front and back, as in Mitsuba
   Uv uv;
   std::uint32_t surface;
+  Direction normal() const { return normalize(face); }
 };
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
 

@@ -18,7 +18,10 @@ struct Texture {
   bool nearest = false;                  // otherwise bilinear between the centres of texels
 };
 
-Rgb eval(const Texture& texture, Uv uv);
+Rgb eval_picture(const Texture& texture, Uv uv);
+inline Rgb eval(const Texture& texture, Uv uv) {
+  return texture.picture ? eval_picture(texture, uv) : texture.colour;
+}
 // Over the picture.
 Rgb mean(const Texture& texture);
 
