@@ -33,11 +33,11 @@ T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_
 // cancellation.
 bool sphere_distance(const Sphere& s, Point o, Direction d, float near, float far, float& distance) {
   const Vec3<double> from = Vec3<double>{o.x, o.y, o.z} - s.centre, along{d.x, d.y, d.z};
-  const double a = dot(along, along), b = -dot(from, along) / a;
+  const double over = 1 / dot(along, along), b = -dot(from, along) * over;
   const Vec3<double> foot = from + b * along;
-  const double chord2 = (s.radius * s.radius - dot(foot, foot)) / a;
-  if (!(chord2 >= 0)) return false;
-  const double chord = sqrt(chord2);
+  const double rest = s.radius * s.radius - dot(foot, foot);
+  if (!(rest >= 0)) return false;
+  const double chord = sqrt(rest * over);
   for (const double t : {b - chord, b + chord}) {
     if (t > double(near) && t < double(far)) return distance = float(t), true;
   }

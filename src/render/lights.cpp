@@ -26,10 +26,11 @@ std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance
   const double cone = cone_of(s, at);
   if (!(cone > 0) || s.inwards) return std::nullopt;
   const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
-  const double d = length(to), drop = to_unit_double(u()) * cone, phi = 2 * M_PI * to_unit_double(u());
+  const double d = length(to), drop = to_unit_double(u()) * cone;
+  const float phi = 2 * pi * to_unit_float(u());
   const double sin2 = drop * (2 - drop), sine = std::sqrt(sin2), cosine = 1 - drop;
   const auto frame = frame_from_normal((1 / d) * to);
-  const auto w = to_world(frame, Vec3<double>{sine * std::cos(phi), sine * std::sin(phi), cosine});
+  const auto w = to_world(frame, Vec3<double>{sine * double(std::cos(phi)), sine * double(std::sin(phi)), cosine});
   const double chord = std::sqrt(std::max(0., s.radius * s.radius - d * d * sin2));
   return LightSample{{float(w.x), float(w.y), float(w.z)},
                      float(d * cosine - chord),

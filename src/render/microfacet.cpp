@@ -76,7 +76,9 @@ float Microfacets::d(Direction wh) const {
   if (!(wh.z > 0)) return 0;
   const float a2 = roughness_.alpha * roughness_.alpha, c2 = wh.z * wh.z;
   const float tan2 = (wh.x * wh.x + wh.y * wh.y) / c2;
-  if (roughness_.kind == Roughness::Kind::beckmann) return std::exp(-tan2 / a2) / (pi * a2 * c2 * c2);
+  if (roughness_.kind == Roughness::Kind::beckmann) {
+    return tan2 > 80 * a2 ? 0 : std::exp(-tan2 / a2) / (pi * a2 * c2 * c2);  // spares exp the underflow
+  }
   return 1 / (pi * a2 * c2 * c2 * (1 + tan2 / a2) * (1 + tan2 / a2));
 }
 

@@ -94,6 +94,9 @@ struct TwoSided final : Scattering {
   float pdf(Direction wo, Direction wi, Uv uv) const override {
     return wo.z > 0 ? front->pdf(wo, wi, uv) : back->pdf(flipped(wo), flipped(wi), uv);
   }
+  Value value(Direction wo, Direction wi, Uv uv) const override {
+    return wo.z > 0 ? front->value(wo, wi, uv) : back->value(flipped(wo), flipped(wi), uv);
+  }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (wo.z > 0) return front->sample(wo, uv, u);
     auto drawn = back->sample(flipped(wo), uv, u);

@@ -85,6 +85,11 @@ struct RoughPlastic final : Scattering {
     if (!(wo.z > 0 && wi.z > 0)) return 0;
     return pdf_about(normalize(wo + wi), wo, wi, chance(wo));
   }
+  Value value(Direction wo, Direction wi, Uv uv) const override {
+    if (!(wo.z > 0 && wi.z > 0)) return {};
+    const Direction wh = normalize(wo + wi);
+    return {f_cos_about(wh, wo, wi, uv), pdf_about(wh, wo, wi, chance(wo))};
+  }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float u1 = to_unit_float(u()), u2 = to_unit_float(u());  // first, for points that are a net in two

@@ -39,10 +39,11 @@ Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const 
   const auto light = lights.sample(at.on.at, u);
   if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
   const Direction wi = to_local(at.frame, light->direction);
-  const Rgb arriving = at.scattering().f_cos(at.wo, wi, at.on.uv) * light->radiance;
+  const auto [f_cos, pdf] = at.scattering().value(at.wo, wi, at.on.uv);
+  const Rgb arriving = f_cos * light->radiance;
   if (arriving == Rgb{} || !sees(at.on.at, light->direction, light->distance)) return {};
   const bool alone = light->delta || technique == Technique::light;
-  const float share = alone ? 1 : heuristic(technique, light->pdf, at.scattering().pdf(at.wo, wi, at.on.uv));
+  const float share = alone ? 1 : heuristic(technique, light->pdf, pdf);
   return (share / light->pdf) * arriving;
 }
 

@@ -34,6 +34,15 @@ class Scattering {
   virtual Rgb f_cos(Direction wo, Direction wi, Uv uv) const = 0;
   // Density of `sample`, without deltas.
   virtual float pdf(Direction wo, Direction wi, Uv uv) const = 0;
+  // Both at once; without light there need be no density.
+  struct Value {
+    Rgb f_cos;
+    float pdf = 0;
+  };
+  virtual Value value(Direction wo, Direction wi, Uv uv) const {
+    const Rgb f = f_cos(wo, wi, uv);
+    return f == Rgb{} ? Value{} : Value{f, pdf(wo, wi, uv)};
+  }
   virtual std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const = 0;
   // One direction for each of `u`, whose bits stand at its decision; returns how many were filled, with their
   // bits moved to the front. A mean over the directions is a sum over those filled divided by u.size().
