@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "commands.hpp"
+#include "phase_clock.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/render/film.hpp"
 
@@ -19,7 +20,7 @@ struct Options {
   int split = 0, photons = 0;
   float radius = 0, alpha = 0;
   bool no_gather = false;
-  bool resume = false;
+  bool resume = false, profile = false;
 };
 
 render::Technique technique_of(const std::string& name) {
@@ -29,6 +30,26 @@ render::Technique technique_of(const std::string& name) {
          : name == "brdf"      ? Technique::surface
          : name == "resampled" ? Technique::resampled
                                : Technique::balance;
+}
+
+void say_profile(const Context& context, const PhaseClock::Reading& r, double paths) {
+  using render::Phase;
+  const auto share = [&](Phase p) { return r.share[std::size_t(p)]; };
+  if (context.json) {
+    context.print_json("render", {{"cpu_seconds", r.seconds},
+                                  {"paths_per_second", paths / r.seconds},
+                                  {"timer_rings", r.rings},
+                                  {"traversal", share(Phase::traversal)},
+                                  {"sample", share(Phase::sample)},
+                                  {"eval", share(Phase::eval)},
+                                  {"rest", share(Phase::rest)}});
+    return;
+  }
+  context.print(
+      fmt::format("{:.2f} s of CPU time, {:.3f} million paths a second of one core, {} looks\n"
+                  "traversal {:5.1f} %\nsample    {:5.1f} %\neval      {:5.1f} %\nrest      {:5.1f} %\n",
+                  r.seconds, paths / r.seconds / 1e6, r.rings, 100 * share(Phase::traversal),
+                  100 * share(Phase::sample), 100 * share(Phase::eval), 100 * share(Phase::rest)));
 }
 
 int run_render(const Context& context, Options& o) {
@@ -50,7 +71,11 @@ int run_render(const Context& context, Options& o) {
   render::Film film;
   if (o.resume) film = render::load_film(sums);
   o.how.seed = context.seed, o.how.technique = technique_of(o.technique);
+  std::optional<PhaseClock> clock;
+  if (o.profile) clock.emplace();
+  const int before = film.samples;
   const bool whole = render::render_into(film, scene, o.how, context.host("rendering"));
+  if (clock) say_profile(context, clock->stop(), double(film.samples - before) * scene.width * scene.height);
   if (film.samples == 0) throw Cancelled();
   const Image image = render::to_image(film);
   render::save_film(sums, film);
@@ -88,6 +113,7 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->check(CLI::Range(0., 1e7).description(""))
       ->type_name("SECONDS");
   command->add_flag("--resume", o->resume, "Go on from FILE.sums, with the same scene and seed");
+  command->add_flag("--profile", o->profile, "Tell where the time goes: traversal, sample, eval, rest");
   command
       ->add_option(
           "--technique", o->technique,

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "reflectree/error.hpp"
+#include "reflectree/render/profile.hpp"
 
 namespace reflectree::render {
 
@@ -161,6 +162,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) {
 }
 
 std::optional<Hit> EmbreeScene::intersect(Point origin, Direction direction, float near) const {
+  const InPhase traversing(Phase::traversal);
   RTCRayHit query;
   query.ray = ray_from(origin, direction, near, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -172,6 +174,7 @@ std::optional<Hit> EmbreeScene::intersect(Point origin, Direction direction, flo
 }
 
 bool EmbreeScene::occluded(Point origin, Direction direction, float near, float far) const {
+  const InPhase traversing(Phase::traversal);
   RTCRay ray = ray_from(origin, direction, near, far);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -39,7 +39,8 @@ Environment::Environment(const Image& p, Frame<float> frame, float scale, const 
   if (p.width < 2 || p.height < 3 || p.channels.size() < 3) {
     throw Error("a sky needs red, green and blue and at least 2 x 3 pixels", where, "use another picture");
   }
-  if (p.width > 65535 || p.height > 65535) throw Error("the sky is too large", where, "use a smaller picture");
+  if (p.width > 65535 || p.height > 65535)
+    throw Error("the sky is too large", where, "use a smaller picture");
   Sky sky{frame, p.width, p.height - 1, {}, {}, {}, {}, {}, {}};
   for (int y = 0; y < p.height; ++y) {
     for (int x = 0; x <= p.width; ++x) {

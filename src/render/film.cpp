@@ -4,7 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <string>
 
+#include "fnv.hpp"
 #include "reflectree/error.hpp"
 
 namespace reflectree::render {
@@ -37,6 +39,18 @@ PointSet points_for(PointSet set, int samples) {
   return set;
 }
 
+std::uint64_t identity_of(const Scene& s, const RenderOptions& o) {
+  const Transport& t = s.transport;
+  std::uint64_t h = fnv(std::to_string(s.identity), fnv_start);
+  for (const double v :
+       {double(s.width), double(s.height), double(s.max_depth), double(s.rr_depth), double(s.points.kind),
+        double(t.method), double(t.split), double(t.photons.count), double(t.photons.radius),
+        double(t.photons.shrink), double(t.photons.gather), double(o.technique)}) {
+    h = fnv(std::to_string(v), h);
+  }
+  return fnv(std::to_string(o.seed), h);
+}
+
 Direction through(const Scene& scene, float x, float y) {
   const Camera& c = scene.camera;
   const float px = 1 - 2 * x / float(scene.width), py = 1 - 2 * y / float(scene.height);
@@ -67,14 +81,15 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
   const auto integrator = make_integrator(scene, options.technique);
   const bool timed = options.seconds > 0;
   const int goal = timed ? (1 << 30) : options.samples > 0 ? options.samples : scene.samples;
+  const std::uint64_t identity = identity_of(scene, options);
   if (film.sums.empty()) {
     const PointSet points = points_for(scene.points, timed ? 16 : goal);
-    film = {scene.width, scene.height, 0, options.seed, points, {}};
+    film = {scene.width, scene.height, 0, options.seed, points, identity, {}};
     film.sums.resize(6 * std::size_t(scene.width) * std::size_t(scene.height));
   }
-  if (film.width != scene.width || film.height != scene.height || film.seed != options.seed ||
-      film.points.kind != scene.points.kind) {
-    throw Error("size, seed or points differ from the scene's", "--resume", "render anew");
+  if (film.identity != identity) {
+    throw Error("the film is of another scene, seed or technique", "--resume",
+                "give what it was begun with, or render anew");
   }
   const int first = film.samples;
   while (film.samples < goal && !(timed && film.samples > first && elapsed() >= options.seconds)) {

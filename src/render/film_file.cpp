@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A film on disk: magic, width, height, samples, seed, points (kind, columns, rows), and the sums as doubles,
-// little-endian.
+// A film on disk: magic, width, height, samples, seed, identity, points (kind, columns, rows), and the sums
+// as doubles, little-endian.
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/render/film.hpp"
@@ -8,14 +8,14 @@
 namespace reflectree::render {
 
 namespace {
-constexpr std::string_view magic = "reflectree film 2\n";
+constexpr std::string_view magic = "reflectree film 3\n";
 }
 
 void save_film(const std::string& path, const Film& film) {
   Bytes out;
   append_text(out, magic);
   append_u32(out, std::uint32_t(film.width)), append_u32(out, std::uint32_t(film.height));
-  append_u32(out, std::uint32_t(film.samples)), append_u64(out, film.seed);
+  append_u32(out, std::uint32_t(film.samples)), append_u64(out, film.seed), append_u64(out, film.identity);
   append_u32(out, std::uint32_t(film.points.kind));
   append_u32(out, film.points.columns), append_u32(out, film.points.rows);
   for (const double v : film.sums) append_f64(out, v);
@@ -29,7 +29,7 @@ Film load_film(const std::string& path) {
   in.seek(magic.size());
   Film film;
   const std::uint32_t width = in.u32(), height = in.u32(), samples = in.u32();
-  film.seed = in.u64();
+  film.seed = in.u64(), film.identity = in.u64();
   const std::uint32_t kind = in.u32(), columns = in.u32(), rows = in.u32();
   if (kind > std::uint32_t(PointSet::Kind::sobol) || columns == 0 || rows == 0 || columns > (1U << 15U) ||
       rows > (1U << 16U)) {

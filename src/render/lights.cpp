@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reflectree/render/profile.hpp"
+
 namespace reflectree::render {
 
 namespace {
@@ -30,7 +32,8 @@ std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance
   const float phi = 2 * pi * to_unit_float(u());
   const double sin2 = drop * (2 - drop), sine = std::sqrt(sin2), cosine = 1 - drop;
   const auto frame = frame_from_normal((1 / d) * to);
-  const auto w = to_world(frame, Vec3<double>{sine * double(std::cos(phi)), sine * double(std::sin(phi)), cosine});
+  const auto w =
+      to_world(frame, Vec3<double>{sine * double(std::cos(phi)), sine * double(std::sin(phi)), cosine});
   const double chord = std::sqrt(std::max(0., s.radius * s.radius - d * d * sin2));
   return LightSample{{float(w.x), float(w.y), float(w.z)},
                      float(d * cosine - chord),
@@ -81,6 +84,7 @@ std::optional<LightSample> Lights::sample_area(Point at, Point on, Direction nor
 
 std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
   if (lights_.empty()) return std::nullopt;
+  const InPhase sampling(Phase::sample);
   const auto n = std::uint32_t(lights_.size());
   const Light& light = lights_[std::size_t((std::uint64_t(u()) * n) >> 32U)];
   std::optional<LightSample> s;

@@ -34,9 +34,9 @@ float inverse_erf(float x) {
 }
 
 // A visible slope x along wo, in units of alpha: its density goes as max(0, cos - x sin) exp(-x^2). In
-// b = erf x the integral up to x, (1 + b) / 2 cos + exp(-x^2) sin / (2 sqrt pi), is concave and has the simple
-// derivative (cos - x sin) / 2; it grows up to x = cot theta. Newton's steps from Jakob's fit (2014, "An
-// Improved Visible Normal Sampling Routine for the Beckmann Distribution"), kept inside a bracket.
+// b = erf x the integral up to x, (1 + b) / 2 cos + exp(-x^2) sin / (2 sqrt pi), is concave and has the
+// simple derivative (cos - x sin) / 2; it grows up to x = cot theta. Newton's steps from Jakob's fit (2014,
+// "An Improved Visible Normal Sampling Routine for the Beckmann Distribution"), kept inside a bracket.
 float visible_slope(float cosine, float sine, float u) {
   if (!(sine > 1e-4f * cosine)) return inverse_erf(2 * u - 1);
   const auto integral = [&](float b, float x) {

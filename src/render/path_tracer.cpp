@@ -38,7 +38,7 @@ Rgb PathTracer::radiance(Point origin, Direction direction, PathBits& u) const {
       result = result + throughput * world_.direct(at, technique_, u);
     }
     u.begin(depth, Decision::surface);
-    const auto next = scattering.sample(at.wo, at.on.uv, u);
+    const auto next = at.sample(u);
     if (!next) return result;
     throughput = throughput * next->weight;
     drawn_pdf = competes && !next->delta ? next->pdf : 0;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reflectree/render/profile.hpp"
+
 namespace reflectree::render {
 
 namespace {
@@ -22,6 +24,16 @@ PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Directi
       wo(to_local(frame, -direction)),
       surface(&scene.surfaces[on.surface]) {}
 
+Scattering::Value PathVertex::value(Direction wi) const {
+  const InPhase evaluating(Phase::eval);
+  return scattering().value(wo, wi, on.uv);
+}
+
+std::optional<Scattered> PathVertex::sample(PathBits& u) const {
+  const InPhase sampling(Phase::sample);
+  return scattering().sample(wo, on.uv, u);
+}
+
 World::World(const Scene& s) : scene(s), embree(s), lights(s) {
   for (const Vertex& v : scene.vertices) extent = std::max(extent, largest(v.at));
   for (const Sphere& sphere : scene.spheres) extent = std::max(extent, float(sphere.radius));
@@ -39,7 +51,7 @@ Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const 
   const auto light = lights.sample(at.on.at, u);
   if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
   const Direction wi = to_local(at.frame, light->direction);
-  const auto [f_cos, pdf] = at.scattering().value(at.wo, wi, at.on.uv);
+  const auto [f_cos, pdf] = at.value(wi);
   const Rgb arriving = f_cos * light->radiance;
   if (arriving == Rgb{} || !sees(at.on.at, light->direction, light->distance)) return {};
   const bool alone = light->delta || technique == Technique::light;

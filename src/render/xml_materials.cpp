@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "xml_materials.hpp"
 
+#include "metals.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/peers/registry.hpp"
@@ -54,8 +55,10 @@ float MaterialReader::relative_ior(Node n, double inside) const {
 std::pair<Rgb, Rgb> MaterialReader::eta_and_k(Node n) const {
   if (XmlReader::named(n, "eta") && XmlReader::named(n, "k"))
     return {xml_.colour(n, "eta", {}, false), xml_.colour(n, "k", {}, false)};
-  if (xml_.word(n, "material", "") == "none") return {};
-  xml_.fail(n, "metals have no tables here", "give eta and k, or material \"none\" for a mirror");
+  const std::string name = xml_.word(n, "material", "none");
+  if (name == "none") return {};
+  if (const Metal* metal = find_metal(name)) return {metal->eta, metal->k};
+  xml_.fail(n, "no metal '" + name + "'", "give eta and k, or one of " + metal_names());
 }
 
 Plastic MaterialReader::plastic_of(Node n) {

@@ -21,7 +21,8 @@ XmlReader::XmlReader(std::string_view xml, const std::string& path, const SceneO
 }
 
 std::string XmlReader::beside(const std::string& file) const {
-  return (std::filesystem::path(path_).parent_path() / file).string();
+  files_.push_back((std::filesystem::path(path_).parent_path() / file).string());
+  return files_.back();
 }
 
 std::string XmlReader::place(std::ptrdiff_t offset) const {

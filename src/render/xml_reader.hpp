@@ -19,7 +19,9 @@ class XmlReader {
 
   Node root() const { return root_; }
   const SceneOptions& options() const { return options_; }
+  // A file that the scene names; its contents belong to the scene's identity.
   std::string beside(const std::string& file) const;
+  std::uint64_t fingerprint() const;
 
   [[noreturn]] void fail(Node n, const std::string& what, const std::string& how) const;
   [[noreturn]] void unknown(Node n) const;
@@ -45,6 +47,7 @@ class XmlReader {
  private:
   std::string place(std::ptrdiff_t offset) const;
   Matrix operation(Node op) const;
+  std::uint64_t hash(Node n, std::uint64_t h) const;
 
   std::string_view xml_;
   const std::string& path_;
@@ -52,6 +55,7 @@ class XmlReader {
   std::map<std::string, std::string> defines_;
   pugi::xml_document document_;
   Node root_;
+  mutable std::vector<std::string> files_;
 };
 
 }  // namespace reflectree::render

@@ -176,7 +176,9 @@ std::optional<PointSet::Kind> points_of(std::string_view name) {
 Scene parse_scene(std::string_view xml, const std::string& path, const SceneOptions& options,
                   const Host& host) {
   const XmlReader reader(xml, path, options);
-  return SceneReader(reader, host).read(path);
+  Scene scene = SceneReader(reader, host).read(path);
+  scene.identity = reader.fingerprint();
+  return scene;
 }
 
 Scene load_scene(const std::string& path, const SceneOptions& options, const Host& host) {

@@ -2,8 +2,8 @@
 // Light from infinitely far away: one radiance, or a latitude-longitude picture read as Mitsuba 3 does.
 // Its columns' centres lie at (x + 1/2) / width of the turn from -z towards x, its first and last row *on*
 // the poles +y and -y, and between them it is bilinear. Importance sampling: one constant density a cell
-// between four texels, drawn by rows and columns (Pharr, Jakob & Humphreys 2016, 14.2.4), each found by a guide
-// table (Chen & Asau 1974): monotone, in constant time, and seldom out of the cache.
+// between four texels, drawn by rows and columns (Pharr, Jakob & Humphreys 2016, 14.2.4), each found by a
+// guide table (Chen & Asau 1974): monotone, in constant time, and seldom out of the cache.
 #pragma once
 
 #include <memory>
@@ -40,11 +40,11 @@ class Environment {
   // Cell (x, y) lies between the texels (x, y) and (x + 1, y + 1).
   struct Sky {
     Frame<float> frame;
-    int width, rows;              // of cells
-    std::vector<Rgb> texels;      // [rows + 1][width + 1], scaled; the last column is the first again
-    std::vector<float> columns;   // [y][x]: cumulative mass in a row of cells
-    std::vector<double> mass;     // cumulative, of rows
-    std::vector<float> sines;     // in the middle of a row
+    int width, rows;             // of cells
+    std::vector<Rgb> texels;     // [rows + 1][width + 1], scaled; the last column is the first again
+    std::vector<float> columns;  // [y][x]: cumulative mass in a row of cells
+    std::vector<double> mass;    // cumulative, of rows
+    std::vector<float> sines;    // in the middle of a row
     // Guides: where in `columns` and `mass` the search for a share k / size begins.
     std::vector<std::uint16_t> first_column, first_row;
 

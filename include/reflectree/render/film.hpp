@@ -22,11 +22,13 @@ struct Film {
   int width = 0, height = 0, samples = 0;
   std::uint64_t seed = 1;
   PointSet points;
-  std::vector<double> sums;  // [pixel][r, g, b, r^2, g^2, b^2]
+  std::uint64_t identity = 0;  // of the scene and the options that its samples depend on
+  std::vector<double> sums;    // [pixel][r, g, b, r^2, g^2, b^2]
 };
 
-// Adds passes to `film`, empty or from an earlier render of the same scene, seed and technique, until it has
-// what `options` ask for. False where the host cancelled: `film` then holds the whole passes before.
+// Adds passes to `film`, empty or from an earlier render of the same scene, seed and technique (else an
+// Error), until it has what `options` ask for. False where the host cancelled: `film` then holds the whole
+// passes before.
 bool render_into(Film& film, const Scene& scene, const RenderOptions& options, const Host& host = {});
 
 // Channels R, G, B and stderr.R, stderr.G, stderr.B, the standard error of each pixel's mean, too

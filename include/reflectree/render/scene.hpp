@@ -94,6 +94,7 @@ struct Scene {
   Transport transport;
   int max_depth = 8;  // path edges, as in Mitsuba; -1: no limit
   int rr_depth = 5;
+  std::uint64_t identity = 0;  // of the file and all that it names; 0: made in memory
 };
 
 struct SceneOptions {

@@ -26,6 +26,8 @@ struct PathVertex {
   Direction wo;
   const Surface* surface;
   const Scattering& scattering() const { return *surface->scattering; }
+  Scattering::Value value(Direction wi) const;
+  std::optional<Scattered> sample(PathBits& u) const;
   // Light that it emits back.
   Rgb emitted() const { return wo.z > 0 ? surface->radiance : Rgb{}; }
 };

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Metals of Mitsuba 3's names. Measured spectra (Palik 1985, Handbook of Optical Constants of Solids, and the
+// SOPRA database; luxpop.com's collection) as red, green and blue: what Mitsuba 3.9.1's RGB variants make of
+// them, which weigh them like emissions, by the CIE 1931 functions without a white point.
+#include "metals.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace reflectree::render {
+
+namespace {
+
+const Metal metals[] = {
+    {"Ag", {0.155276f, 0.116728f, 0.138388f}, {4.82835f, 3.12222f, 2.1469f}},
+    {"Al", {1.6575f, 0.880405f, 0.521244f}, {9.22381f, 6.2695f, 4.837f}},
+    {"Au", {0.143036f, 0.375307f, 1.44205f}, {3.983f, 2.38556f, 1.60336f}},
+    {"Be", {4.18501f, 3.18503f, 2.78406f}, {3.83547f, 3.01012f, 2.86899f}},
+    {"Cr", {4.36967f, 2.91651f, 1.6549f}, {5.20655f, 4.23131f, 3.7547f}},
+    {"Cu", {0.201005f, 0.92375f, 1.10222f}, {3.91326f, 2.45305f, 2.14209f}},
+    {"Hg", {2.39894f, 1.44003f, 0.90957f}, {6.32759f, 4.37192f, 3.42176f}},
+    {"Ir", {3.0863f, 2.08219f, 1.61791f}, {5.59215f, 4.06709f, 3.26731f}},
+    {"K", {0.0640432f, 0.0464098f, 0.0381849f}, {2.1042f, 1.34894f, 0.913126f}},
+    {"Li", {0.265791f, 0.195618f, 0.220949f}, {3.54015f, 2.31112f, 1.66861f}},
+    {"Mo", {4.48397f, 3.52513f, 2.77631f}, {4.11144f, 3.42083f, 3.15061f}},
+    {"Na_palik", {0.0602694f, 0.0561409f, 0.0619884f}, {3.17927f, 2.11249f, 1.57904f}},
+    {"Nb", {3.42007f, 2.79009f, 2.39563f}, {3.44139f, 2.73767f, 2.57975f}},
+    {"Ni_palik", {2.3673f, 1.66337f, 1.46708f}, {4.49881f, 3.05015f, 2.34544f}},
+    {"Rh", {2.58579f, 1.86022f, 1.55426f}, {6.78226f, 4.70299f, 3.97607f}},
+    {"Ta", {2.06272f, 2.39294f, 2.62793f}, {2.40836f, 1.74149f, 1.94703f}},
+    {"V_palik", {4.27758f, 3.51295f, 2.76107f}, {3.4913f, 2.88945f, 3.11152f}},
+    {"W", {4.37082f, 3.30025f, 2.99841f}, {3.50064f, 2.60487f, 2.27323f}},
+    {"TiN", {1.64845f, 1.15052f, 1.37982f}, {3.36833f, 1.9435f, 1.10207f}},
+};
+
+}  // namespace
+
+const Metal* find_metal(std::string_view name) {
+  const auto* found =
+      std::find_if(std::begin(metals), std::end(metals), [&](const Metal& m) { return m.name == name; });
+  return found == std::end(metals) ? nullptr : found;
+}
+
+std::string metal_names() {
+  std::string all = "none";
+  for (const Metal& m : metals) all += ", " + std::string(m.name);
+  return all;
+}
+
+}  // namespace reflectree::render
