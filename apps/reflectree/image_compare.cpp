@@ -2,22 +2,35 @@
 // image-compare: how far one picture is from another.
 #include "reflectree/render/image_compare.hpp"
 #include "commands.hpp"
+#include "reflectree/render/flip.hpp"
 
 namespace reflectree::cli {
 
 namespace {
 
 struct Options {
-  std::string a, b, map;
+  std::string a, b, map, flip;
   double scale = .02;
   render::CompareOptions how;
+  render::FlipOptions eye;
 };
+
+// 8-bit pictures are encoded.
+Image linear(Image image, const std::string& path) {
+  if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
+    for (float& v : image.values) v = from_srgb(v);
+  }
+  return image;
+}
 
 int run_compare(const Context& context, const Options& o) {
   const Image a = read_image(o.a), b = read_image(o.b);
   const render::ImageDifference d = render::compare(a, b, o.how);
   if (!o.map.empty()) write_png(o.map, render::difference_map(a, b, o.how.block, o.scale));
+  const Image seen = render::flip(linear(b, o.b), linear(a, o.a), o.eye);
+  if (!o.flip.empty()) write_png(o.flip, render::heat(seen));
   Json json;
+  json["flip"] = render::mean_of(seen);
   std::string text = fmt::format("{:8}{:>12}{:>12}{:>11}{:>9}{:>12}{:>12}\n", "channel", "mean A", "mean B",
                                  "A / B - 1", "z", "MSE", "relMSE");
   for (const auto& c : d.channels) {
@@ -31,6 +44,7 @@ int run_compare(const Context& context, const Options& o) {
                                 {"mse", c.mse},
                                 {"relative_mse", c.relative_mse}});
   }
+  text += fmt::format("FLIP {:.4f}\n", render::mean_of(seen));
   if (d.z) {
     text += fmt::format("z-scores of {} blocks of {} pixels ({} left out), quantiles:\n", d.z->blocks,
                         o.how.block * o.how.block, d.z->left_out);
@@ -51,7 +65,7 @@ int run_compare(const Context& context, const Options& o) {
 
 void add_image_compare(CLI::App& app, Context& context, Run& run) {
   CLI::App* command =
-      app.add_subcommand("image-compare", "Compare two pictures: means, MSE, relMSE, z-scores");
+      app.add_subcommand("image-compare", "Compare two pictures: means, MSE, relMSE, FLIP, z-scores");
   auto o = std::make_shared<Options>();
   command->add_option("a", o->a, "Picture")->required()->type_name("A");
   command->add_option("b", o->b, "Picture to compare with, the reference")->required()->type_name("B");
@@ -63,6 +77,14 @@ void add_image_compare(CLI::App& app, Context& context, Run& run) {
       ->type_name("FILE");
   command->add_option("--scale", o->scale, "Relative difference of full colour in the map")
       ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->capture_default_str()
+      ->type_name("X");
+  command->add_option("--flip", o->flip, "PNG of FLIP, what an eye would see: black, red, yellow, white")
+      ->type_name("FILE");
+  command->add_option("--exposure", o->eye.exposure, "Stops by which both are brightened for FLIP")
+      ->type_name("EV");
+  command->add_option("--ppd", o->eye.pixels_per_degree, "Pixels a degree on FLIP's screen")
+      ->check(CLI::Range(1., 999.).description(""))
       ->capture_default_str()
       ->type_name("X");
   command->callback([&context, &run, o] { run = [&context, o] { return run_compare(context, *o); }; });
