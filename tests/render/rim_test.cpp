@@ -94,7 +94,7 @@ TEST(Film, OfAnotherSceneOrOtherOptionsIsRefused) {
   spaced.insert(spaced.find("<sensor"), "<!-- the same -->\n");
   EXPECT_TRUE(goes_on(parse_scene(spaced, "elsewhere.xml"), {.samples = 2}));
   EXPECT_FALSE(goes_on(parse_scene(xml, "wall.xml", {.defines = {{"albedo", ".6"}}}), {.samples = 2}));
-  EXPECT_FALSE(goes_on(parse_scene(xml, "wall.xml", {.sampler = "exact"}), {.samples = 2}));
+  EXPECT_FALSE(goes_on(parse_scene(xml, "wall.xml", {{}, "exact"}), {.samples = 2}));
   EXPECT_FALSE(goes_on(scene, {.samples = 2, .technique = Technique::power}));
   EXPECT_FALSE(goes_on(scene, {.samples = 2, .seed = 2}));
   Scene split = scene;
