@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene is, as a number: its elements without comments, space and the number of samples, names
-// replaced by what they stand for; the sampler of its materials; the contents of the files that it names.
+// replaced by what they stand for; the samplers of its materials; the contents of the files that it names.
 #include <algorithm>
 
 #include "fnv.hpp"
@@ -29,7 +29,7 @@ std::uint64_t XmlReader::hash(Node n, std::uint64_t h) const {
 }
 
 std::uint64_t XmlReader::fingerprint() const {
-  std::uint64_t h = fnv(options_.sampler, hash(root_, fnv_start));
+  std::uint64_t h = fnv(options_.adjoint, fnv(options_.sampler, hash(root_, fnv_start)));
   std::vector<std::string> files = files_;
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());

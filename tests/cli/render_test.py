@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What surrounds a render: where its time goes, whose film it goes on with, how different two pictures look."""
+import unittest
+
+from program import ProgramTest
+
+SCENE = """<scene version="3.0.0"><default name="grey" value="0.5"/><integrator type="path"/>
+<sensor type="perspective"><transform name="to_world"><lookat origin="0, -3, 1" target="0, 0, 0.8" up="0, 0, 1"/>
+</transform><film type="hdrfilm"><integer name="width" value="64"/><integer name="height" value="48"/></film></sensor>
+<emitter type="constant"/><shape type="rectangle"><bsdf type="diffuse"><rgb name="reflectance" value="$grey"/></bsdf>
+</shape><shape type="sphere"><float name="radius" value="0.5"/></shape></scene>"""
+
+
+class Render(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.xml", SCENE.encode())
+
+    def test_profile_shares_the_time_out(self):
+        found = self.json_of("render", self.scene, "--spp", 64, "--profile")
+        self.assertGreater(found["timer_rings"], 3)
+        self.assertGreater(found["traversal"], 0)
+        self.assertAlmostEqual(sum(found[k] for k in ("traversal", "sample", "eval", "rest")), 1, places=6)
+
+    def test_a_film_goes_on_with_its_own_scene_alone(self):
+        self.run_program("render", self.scene, "--spp", 2)
+        self.run_program("render", self.scene, "--spp", 4, "--resume")
+        for options in (["-D", "grey=0.4"], ["--technique", "power"], ["--seed", 2], ["--integrator", "recursive"]):
+            _, said = self.run_program("render", self.scene, "--spp", 6, "--resume", *options, code=2)
+            self.assertIn("another scene", said, options)
+
+    def test_flip(self):
+        self.run_program("render", self.scene, "--spp", 4, "-o", "a.exr")
+        self.run_program("render", self.scene, "--spp", 4, "-o", "b.exr", "-D", "grey=0.2")
+        self.assertEqual(self.json_of("image-compare", "a.exr", "a.exr")["flip"], 0)
+        exr = self.json_of("image-compare", "b.exr", "a.exr", "--flip", "seen.png")["flip"]
+        self.assertGreater(exr, 0.01)
+        self.assertTrue((self.folder / "seen.png").exists())
+        png = self.json_of("image-compare", "b.png", "a.png")["flip"]
+        self.assertAlmostEqual(png, exr, delta=0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()
