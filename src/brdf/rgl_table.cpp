@@ -136,8 +136,8 @@ void RglTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<
 }
 
 Rgb RglTable::value(const Known& of_wo, const ShadingGeometry<float>& g) const {
-  const auto [pair, t1, four_sigma] = of_wo;
-  const float t0 = 1 - t1;
+  const std::size_t pair = of_wo.pair;
+  const float t1 = of_wo.t1, t0 = 1 - t1;
 
   // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
   const bool normal = g.wo.x == 0 && g.wo.y == 0;
@@ -171,7 +171,7 @@ Rgb RglTable::value(const Known& of_wo, const ShadingGeometry<float>& g) const {
                           (pair * std::size_t(colour_height_) + std::size_t(qy.node)) * colour_stride +
                           std::size_t(qx.node);
   const float a1 = qx.fraction, a0 = 1 - a1, b1 = qy.fraction, b0 = 1 - b1;
-  const float scale = interpolate(ndf_, u) / (four_sigma * max(1e-6f, g.cos_theta_i));
+  const float scale = interpolate(ndf_, u) / (of_wo.four_sigma * max(1e-6f, g.cos_theta_i));
   float out[4] = {0, 0, 0, 0};
   const auto add = [&out](const ColourNode& n, float w0, float w1) {
     for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];
