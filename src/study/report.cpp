@@ -69,7 +69,7 @@ std::string verdict_section(std::span<const MaterialResult> materials, const Ver
       tiles + "</dl>\n<div class=\"pictures wide\"><figure>" +
       inline_svg(bar_figure("Efficiency", "the better of our modes = 1", bars, true)) +
       "</figure><div class=\"scroll\"><table><thead><tr><th>sampler</th><th>kind</th><th>materials</th>"
-      "<th>relative efficiency</th><th>biased cells</th><th>faults</th></tr></thead><tbody>" +
+      "<th>efficiency</th><th>biased</th><th>faults</th></tr></thead><tbody>" +
       rows + "</tbody></table></div></div>\n";
   if (!v.losses.empty()) out += losses_table(materials, v);
   return out + "</section>\n";
