@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures go out and come back; damaged ones end in an Error, never in a crash.
 #include "reflectree/io/image.hpp"
+#include "../scratch.hpp"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-#include <cmath>
 
 #include <filesystem>
 
@@ -15,10 +14,6 @@
 
 namespace reflectree {
 namespace {
-
-std::string temporary(const char* name) {
-  return (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)).string();
-}
 
 Image noise(int width, int height, std::vector<std::string> channels) {
   Image image = make_image(width, height, std::move(channels));
@@ -30,7 +25,7 @@ Image noise(int width, int height, std::vector<std::string> channels) {
 TEST(Image, ExrReturnsEveryBitLayerAndWord) {
   Image image = noise(17, 5, {"B", "G", "R", "stderr.B", "stderr.R"});
   image.metadata["seed"] = "11";
-  const std::string path = temporary("a.exr");
+  const std::string path = scratch("a.exr");
   write_exr(path, image);
   const Image back = read_image(path);
   EXPECT_EQ(back.channels, image.channels);
@@ -46,7 +41,7 @@ TEST(Image, ExrReturnsEveryBitLayerAndWord) {
 TEST(Image, PngReturnsColoursAndRefusesDamage) {
   Image image = make_image(3, 1, {"R", "G", "B"});
   image.values = {0, .5f, 1, 2, -1, .25f, NAN, 0, 0};
-  const std::string path = temporary("a.png");
+  const std::string path = scratch("a.png");
   write_png(path, image);
   const Image back = read_image(path);
   const float expected[] = {0, .5f, 1, 1, 0, .25f, 1, 0, 1};

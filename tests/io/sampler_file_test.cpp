@@ -4,6 +4,7 @@
 // 3. Unknown optional chunks are skipped, unknown required ones refused by name.
 // 4. Damage of any kind is an Error in one line; behind a mended checksum too.
 #include "reflectree/io/sampler_file.hpp"
+#include "../scratch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ std::string words_of(ByteView bytes) {
 }
 
 Bytes with_checksum(Bytes bytes) {
-  bytes.resize(bytes.size() - 4);
+  bytes.erase(bytes.end() - 4, bytes.end());
   append_u32(bytes, crc32(bytes));
   return bytes;
 }
@@ -74,7 +75,7 @@ TEST(SamplerFile, ReadsWhatItWrites) {
 TEST(SamplerFile, SavesAndLoadsABuiltSamplerThatSamplesAlike) {
   const AnyBrdf f = make_brdf(parse_material("ggx:alpha=0.5"));
   const SamplerData data = build(f);
-  const std::string path = testing::TempDir() + "sampler_file_test.rfl";
+  const std::string path = scratch("sampler.rfl");
   save_sampler(path, data);
   const SamplerData loaded = load_sampler(path);
   std::filesystem::remove(path);

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "../scratch.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/render/film.hpp"
 
@@ -32,15 +33,15 @@ const std::string obj = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\
 enum class End { picture, error };
 
 End end_of(const std::string& kind, const std::string& bytes) {
-  const std::string folder = testing::TempDir(), name = "reflectree_mesh." + kind;
-  std::ofstream(folder + name, std::ios::binary) << bytes;
+  const std::string name = "mesh." + kind;
+  std::ofstream(scratch(name), std::ios::binary) << bytes;
   const std::string xml = R"(<scene version="3.0.0"><integrator type="path"/><sensor type="perspective">
     <transform name="to_world"><lookat origin="0,0,4" target="0,0,0" up="0,1,0"/></transform><film type="hdrfilm">
     <integer name="width" value="2"/><integer name="height" value="2"/></film></sensor><emitter type="constant"/>
     <shape type=")" + kind +
                           "\"><string name=\"filename\" value=\"" + name + "\"/></shape></scene>";
   try {
-    const Image image = render(parse_scene(xml, folder + "scene.xml"), {.samples = 1});
+    const Image image = render(parse_scene(xml, scratch("scene.xml")), {.samples = 1});
     for (const float v : image.values) EXPECT_TRUE(std::isfinite(v));
     return End::picture;
   } catch (const Error&) {

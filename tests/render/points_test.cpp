@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "../scratch.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/render/film.hpp"
 
@@ -145,7 +146,7 @@ TEST(Points, ThreadsAndInterruptionsDoNotMatter) {
     stops.cancelled = [&] { return ++polls > 12; };
     ASSERT_FALSE(render_into(film, scene, {.samples = 20, .seed = 5}, stops));
     ASSERT_EQ(film.samples, 8);
-    const std::string file = testing::TempDir() + "reflectree_points.sums";
+    const std::string file = scratch("points.sums");
     save_film(file, film);
     film = load_film(file);
     ASSERT_TRUE(render_into(film, scene, {.samples = 20, .seed = 5}));

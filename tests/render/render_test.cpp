@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "../scratch.hpp"
 #include "reflectree/brdf/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/render/film.hpp"
@@ -187,7 +188,7 @@ TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
 
 TEST(Render, StoppedAndResumedIsUninterrupted) {
   const Scene scene = parse_scene(lit_wall, "lights.xml");
-  const std::string file = testing::TempDir() + "reflectree_film.sums";
+  const std::string file = scratch("film.sums");
   Film film;
   ASSERT_TRUE(render_into(film, scene, {.samples = 11, .seed = 3}));
   save_film(file, film);

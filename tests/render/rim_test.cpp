@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "../scratch.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/render/film.hpp"
 
@@ -79,7 +80,7 @@ TEST(Film, OfAnotherSceneOrOtherOptionsIsRefused) {
   const Scene scene = parse_scene(xml, "wall.xml");
   Film film;
   ASSERT_TRUE(render_into(film, scene, {.samples = 1}));
-  const std::string file = testing::TempDir() + "reflectree_rim.sums";
+  const std::string file = scratch("rim.sums");
   save_film(file, film);
   const auto goes_on = [&](const Scene& with, const RenderOptions& how) {
     Film again = load_film(file);
