@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures go out and come back; damaged ones end in an Error, never in a crash.
 #include "reflectree/io/image.hpp"
-#include "../scratch.hpp"
 
 #include <gtest/gtest.h>
 
-
 #include <filesystem>
 
+#include "../scratch.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/math/random.hpp"
