@@ -269,12 +269,15 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
                          std::uint64_t* evaluations) {
   const double cubature_error = 0.25 * double(relative_error),
                interpolation_error = 0.15 * double(relative_error);
-  // Panels of at most 7.5 degrees, and octaves towards the horizon.
-  std::vector<double> borders;
-  // Where a mirror lobe passes the kinks of a table over the difference angle, a panel begins at every second
-  // kink: the one between is met by the middle node, and the parabola shows what it weighs.
+  // Panels of at most 7.5 degrees, and octaves towards the horizon. Where a mirror lobe passes the kinks of a
+  // table over the difference angle, a panel begins at every second kink: the one between is met by the
+  // middle node, and the parabola shows what it weighs.
+  constexpr std::size_t steps = 12;
   const std::vector<float> kinks = field.f.traits().theta_d_knots;
-  for (int i = 0; i < 12 && (i == 0 || kinks.empty()); ++i) borders.push_back(i * 7.5 * pi_v<double> / 180);
+  const bool dense = kinks.size() >= 2 * steps;  // then their panels are narrower than the steps
+  std::vector<double> borders;
+  for (std::size_t i = 0; i < (dense ? 1 : steps); ++i)
+    borders.push_back(double(i) * 7.5 * pi_v<double> / 180);
   for (std::size_t i = 0; i < kinks.size(); i += 2) borders.push_back(double(kinks[i]));
   for (const double near : {0.5, 1.5, 3.75})
     borders.push_back(near * pi_v<double> / 180);  // kinks of tables crowd

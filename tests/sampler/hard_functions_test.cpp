@@ -5,8 +5,10 @@
 
 #include "functions.hpp"
 #include "majorant_field.hpp"
+#include "reflectree/brdf/baked_tables.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/sampler/albedo.hpp"
 #include "reflectree/verify/attack.hpp"
 #include "reflectree/verify/reciprocity.hpp"
 
@@ -44,6 +46,22 @@ TEST(Needle, OffTheLandmarksIsFoundAndSampled) {
     for (int i = 0; i < 500'000; ++i) s.exact.sample(wo_at(89 * to_unit_double(u())), u, statistics);
     EXPECT_LT(statistics.overshoot_sum / double(statistics.trials), 1e-5) << width;
   }
+}
+
+// A table over the difference angle has a kink every 1.9 degrees, which its mirror lobe carries into the
+// albedo. The twin does not tell of them.
+TEST(Albedo, FollowsTheKinksOfTablesThatTellOfThem) {
+  const HalfAngleTable table = bake_table("baked_glossy");
+  const AnyBrdf silent = [&table](Direction wo, Direction wi) { return table(shading_geometry(wo, wi)); };
+  const AlbedoTable told = build(AnyBrdf(table)).albedo, untold = build(silent).albedo;
+  double worst = 0, worst_untold = 0;
+  for (double deg = 71.1; deg < 73.5; deg += 0.2) {
+    const double albedo = reference_albedo(target_function(silent), wo_at(deg)).value;
+    worst = max(worst, std::abs(double(albedo_at(told, wo_at(deg).z)) / albedo - 1));
+    worst_untold = max(worst_untold, std::abs(double(albedo_at(untold, wo_at(deg).z)) / albedo - 1));
+  }
+  EXPECT_LT(worst, 1e-4);
+  EXPECT_GT(worst_untold, 1e-4);
 }
 
 // A slab of one leaf, raised by the attack, whose neighbours must grow again: it keeps its bound.
