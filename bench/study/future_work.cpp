@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the paper left for later, one ablation each on the paper's own sampler. Prints Markdown.
 #include <cstring>
-#include <iostream>
 
 #include "judged.hpp"
 #include "reflectree/peers/haar_warp.hpp"
 #include "reflectree/peers/paper_sampler.hpp"
 #include "reflectree/peers/paper_statistics.hpp"
+#include "study_program.hpp"
 
 namespace {
 
@@ -248,8 +248,9 @@ void show_steps(std::span<const Environment> lights) {
 
 }  // namespace
 
-int main() {
-  try {
+int main(int argc, char** argv) {
+  CLI::App app("What the paper left for later, one ablation each on the paper's own sampler, as Markdown.");
+  return run_program(app, argc, argv, [] {
     const std::vector<Environment> lights{procedural_environments()[1]};
     std::printf(
         "# What the paper left for later\n\nAblations on the paper's own sampler. Columns with (*) are "
@@ -265,8 +266,5 @@ int main() {
     std::fflush(stdout);
     show_steps(lights);
     return 0;
-  } catch (const std::exception& e) {
-    std::cerr << e.what() << '\n';
-    return 2;
-  }
+  });
 }

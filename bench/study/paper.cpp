@@ -4,11 +4,11 @@
 // pictures into the folder named first. Measured materials are those of REFLECTREE_DATA, a few, or all after
 // --all; and every .binary file of the folder after --merl. After --only-measured nothing else is done.
 #include <cstdio>
-#include <iostream>
 
 #include "judged.hpp"
 #include "log_plot.hpp"
 #include "paper_parts.hpp"
+#include "study_program.hpp"
 
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
@@ -124,23 +124,20 @@ void show_precomputation(const AnyBrdf& f) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    std::string folder;
-    Measured measured;
-    bool only_measured = false;
-    for (int i = 1; i < argc; ++i) {
-      const std::string word = argv[i];
-      if (word == "--all") {
-        measured.all = true;
-      } else if (word == "--only-measured") {
-        only_measured = true;
-      } else if (word == "--merl") {
-        if (i + 1 == argc) throw Error("no folder", word, "name one with .binary files after it");
-        measured.merl = argv[++i];
-      } else {
-        folder = word;
-      }
-    }
+  CLI::App app(
+      "The paper's results again, as Markdown. Columns with (*) are timings, on one thread. Ends with exit "
+      "code 1 if "
+      "a slope of error against samples fails.");
+  std::string folder;
+  Measured measured;
+  bool only_measured = false;
+  app.add_option("FOLDER", folder, "where the pictures go; none are drawn without it")
+      ->check(CLI::ExistingDirectory);
+  app.add_flag("--all", measured.all, "all measured materials of REFLECTREE_DATA, not every twelfth");
+  app.add_flag("--only-measured", only_measured, "only memory and precomputation of measured materials");
+  app.add_option("--merl", measured.merl, "a folder with .binary files of the MERL database")
+      ->check(CLI::ExistingDirectory);
+  return run_program(app, argc, argv, [&] {
     if (only_measured) {
       show_measured(measured);
       return 0;
@@ -158,8 +155,5 @@ int main(int argc, char** argv) {
     show_precomputation(f);
     show_measured(measured);
     return holds ? 0 : 1;
-  } catch (const std::exception& e) {
-    std::cerr << e.what() << '\n';
-    return 2;
-  }
+  });
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the tabulated competitors were tuned: memory, build and variance against their options, as Markdown.
-// Usage: study_peers_tuning [SAMPLES [NAME]]; measured materials are found through REFLECTREE_DATA.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/peers/tabulated.hpp"
 #include "reflectree/verify/reference.hpp"
+#include "study_program.hpp"
 
 namespace {
 
@@ -163,29 +163,39 @@ std::vector<Variant> variants() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int samples = argc > 1 ? std::atoi(argv[1]) : 100'000;
-  const std::string only = argc > 2 ? argv[2] : "";
-  const std::vector<Subject> all = subjects();
-  std::printf("| peer | KiB | build s | variance * KiB | worst bias, sigmas |");
-  for (const Subject& subject : all) std::printf(" %s |", subject.name.c_str());
-  std::printf("\n|---|---|---|---|---|");
-  for (std::size_t i = 0; i < all.size(); ++i) std::printf("---|");
-  std::printf("\n");
-  for (const Variant& variant : variants()) {
-    if (variant.text.find(only) == std::string::npos) continue;
-    double kib = 0, seconds = 0, product = 0, bias = 0, sigmas = 0;
-    std::string cells;
-    for (const Subject& subject : all) {
-      const Measured m = measure(subject, variant.make, variant.tuning, samples);
-      const double n = double(all.size());
-      kib += m.kib / n, seconds += m.seconds / n, product += std::log(std::max(m.variance, 1e-6) * m.kib) / n;
-      if (std::abs(m.sigmas) > std::abs(sigmas)) sigmas = m.sigmas, bias = m.bias;
-      char cell[80];
-      std::snprintf(cell, sizeof cell, " %.2g / %.2g |", m.variance, m.worst);
-      cells += cell;
+  CLI::App app(
+      "How the tabulated competitors were tuned, as Markdown: memory, build and variance against their "
+      "options. "
+      "Measured files are those of REFLECTREE_DATA.");
+  int samples = 100'000;
+  std::string only;
+  app.add_option("--samples", samples, "a cell")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--only", only, "competitors whose name contains this");
+  return study::run_program(app, argc, argv, [&] {
+    const std::vector<Subject> all = subjects();
+    std::printf("| peer | KiB | build s | variance * KiB | worst bias, sigmas |");
+    for (const Subject& subject : all) std::printf(" %s |", subject.name.c_str());
+    std::printf("\n|---|---|---|---|---|");
+    for (std::size_t i = 0; i < all.size(); ++i) std::printf("---|");
+    std::printf("\n");
+    for (const Variant& variant : variants()) {
+      if (variant.text.find(only) == std::string::npos) continue;
+      double kib = 0, seconds = 0, product = 0, bias = 0, sigmas = 0;
+      std::string cells;
+      for (const Subject& subject : all) {
+        const Measured m = measure(subject, variant.make, variant.tuning, samples);
+        const double n = double(all.size());
+        kib += m.kib / n, seconds += m.seconds / n,
+            product += std::log(std::max(m.variance, 1e-6) * m.kib) / n;
+        if (std::abs(m.sigmas) > std::abs(sigmas)) sigmas = m.sigmas, bias = m.bias;
+        char cell[80];
+        std::snprintf(cell, sizeof cell, " %.2g / %.2g |", m.variance, m.worst);
+        cells += cell;
+      }
+      std::printf("| %s | %.0f | %.2f | %.3g | %+.1e, %+.1f |%s\n", variant.text.c_str(), kib, seconds,
+                  std::exp(product), bias, sigmas, cells.c_str());
+      std::fflush(stdout);
     }
-    std::printf("| %s | %.0f | %.2f | %.3g | %+.1e, %+.1f |%s\n", variant.text.c_str(), kib, seconds,
-                std::exp(product), bias, sigmas, cells.c_str());
-    std::fflush(stdout);
-  }
+    return 0;
+  });
 }

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 
 #include "reflectree/error.hpp"
 #include "reflectree/io/image.hpp"
@@ -16,6 +15,7 @@
 #include "reflectree/render/film.hpp"
 #include "reflectree/render/image_compare.hpp"
 #include "reflectree/study/thread_time.hpp"
+#include "study_program.hpp"
 
 namespace {
 
@@ -152,21 +152,14 @@ void show(const Options& o, const Shot& shot) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    Options o;
-    for (int i = 1; i < argc; ++i) {
-      const std::string word = argv[i];
-      const bool last = i + 1 == argc;
-      if (word == "--scene" && !last) {
-        o.only = argv[++i];
-      } else if (word == "--scenes" && !last) {
-        o.scenes = argv[++i];
-      } else if (word == "--reference" && !last) {
-        o.reference = std::max(1, std::atoi(argv[++i]));
-      } else {
-        o.folder = word;
-      }
-    }
+  CLI::App app("The study in pictures, as Markdown: the same scenes by every sampler.");
+  Options o;
+  app.add_option("FOLDER", o.folder, "where the pictures go; none are drawn without it")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--scene", o.only, "this one alone");
+  app.add_option("--scenes", o.scenes, "the folder of the scenes")->check(CLI::ExistingDirectory);
+  app.add_option("--reference", o.reference, "samples a pixel of the reference")->check(CLI::PositiveNumber);
+  return study::run_program(app, argc, argv, [&] {
     std::printf(
         "# Pictures\n\n    REFLECTREE_DATA=... build/bin/study_pictures docs/results\n\n450 × 200 pixels, "
         "path "
@@ -186,8 +179,5 @@ int main(int argc, char** argv) {
       show(o, shot);
     }
     return 0;
-  } catch (const std::exception& e) {
-    std::cerr << e.what() << '\n';
-    return 2;
-  }
+  });
 }

@@ -2,7 +2,6 @@
 // Medians over the materials of a table of fits (such as the 100 SGD fits of MERL): relative standard
 // deviation of the weight's target, for the samplers that know a material by a few numbers. Printed as the
 // Markdown of its table.
-//   study_proxies FITS.csv [norm|luminance]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/peers/registry.hpp"
 #include "reflectree/verify/reference.hpp"
+#include "study_program.hpp"
 
 namespace reflectree {
 namespace {
@@ -69,13 +69,17 @@ int run(const std::string& path, Target target) {
 }  // namespace
 }  // namespace reflectree
 
-int main(int count, char** words) {
-  if (count < 2) return std::fprintf(stderr, "study_proxies FITS.csv [norm|luminance]\n"), 2;
+int main(int argc, char** argv) {
+  CLI::App app("How far samplers that know a material by a few numbers vary, as Markdown.");
+  std::string fits;
   reflectree::Target target;
-  if (count > 2 && std::string(words[2]) == "luminance") target.kind = reflectree::TargetKind::luminance;
-  try {
-    return reflectree::run(words[1], target);
-  } catch (const reflectree::Error& e) {
-    return std::fprintf(stderr, "%s\n", e.what()), 1;
-  }
+  bool luminance = false;
+  app.add_option("FITS.csv", fits, "a table of fits, a material a line")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_flag("--luminance", luminance, "aim at luminance, not at the norm of the channels");
+  return reflectree::study::run_program(app, argc, argv, [&] {
+    if (luminance) target.kind = reflectree::TargetKind::luminance;
+    return reflectree::run(fits, target);
+  });
 }

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <tuple>
 
 #include "reflectree/error.hpp"
@@ -17,6 +16,7 @@
 #include "reflectree/peers/tabulated.hpp"
 #include "reflectree/peers/warp_chain.hpp"
 #include "rgl_own_sampler.hpp"
+#include "study_program.hpp"
 
 namespace {
 
@@ -145,8 +145,9 @@ void show_hardest(const std::string& path) {
 
 }  // namespace
 
-int main() {
-  try {
+int main(int argc, char** argv) {
+  CLI::App app("Competitors beside their papers, as Markdown. Measured files are those of REFLECTREE_DATA.");
+  return study::run_program(app, argc, argv, [] {
     std::printf("# Competitors beside their papers\n\n");
     show_visible_normals();
     const char* data = std::getenv("REFLECTREE_DATA");
@@ -158,8 +159,5 @@ int main() {
     show_warp_chain(folder);
     show_hardest(folder + "/chm_mint_rgb.bsdf");
     return 0;
-  } catch (const std::exception& e) {
-    std::cerr << e.what() << '\n';
-    return 2;
-  }
+  });
 }

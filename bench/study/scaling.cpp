@@ -3,7 +3,6 @@
 // materials, and that of the competitors. Prints Markdown; writes its plots into the folder named first.
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 #include "log_plot.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
@@ -12,6 +11,7 @@
 #include "reflectree/study/measure.hpp"
 #include "reflectree/study/thread_time.hpp"
 #include "scaling_parts.hpp"
+#include "study_program.hpp"
 
 namespace {
 
@@ -175,10 +175,10 @@ int run(const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc > 1 ? argv[1] : "");
-  } catch (const std::exception& e) {
-    std::cerr << e.what() << '\n';
-    return 2;
-  }
+  CLI::App app(
+      "How cost grows, as Markdown: with sharpness, accuracy, the cost of f, threads and materials.");
+  std::string folder;
+  app.add_option("FOLDER", folder, "where the plots go; none are drawn without it")
+      ->check(CLI::ExistingDirectory);
+  return run_program(app, argc, argv, [&] { return run(folder); });
 }

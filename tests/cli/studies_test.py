@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The studies: study_paper measures real MERL files where a folder of them is given; the scenes of study_pictures
-render."""
+render; every study tells its usage."""
 import os
 import pathlib
 import subprocess
@@ -41,6 +41,7 @@ class StudyPaper(ProgramTest):
         self.assertIn("broken.binary", self.measure("--merl", "merl", code=2)[1])
         self.assertIn("Left out", self.measure()[0])
 
+
 class StudyPictures(ProgramTest):
     def test_its_scenes_render(self):
         scenes = pathlib.Path(__file__).parents[2] / "bench" / "study" / "scenes"
@@ -49,6 +50,25 @@ class StudyPictures(ProgramTest):
             self.run_program("image-compare", f"{name}.exr", f"{name}.exr")
         # The twin: without its data the fourth is refused.
         self.assertIn("$", self.run_program("render", scenes / "ball.xml", "--spp", 1, code=2)[1])
+
+
+class Usage(ProgramTest):
+    def test_every_study_helps_and_refuses_what_it_does_not_know(self):
+        studies = sorted(pathlib.Path(os.environ["REFLECTREE_STUDY_PAPER"]).parent.glob("study_*"))
+        self.assertGreaterEqual(len(studies), 6)
+        for study in studies:
+            with self.subTest(study.name):
+                def run(*args, study=study):
+                    return subprocess.run([study, *args], cwd=self.folder, env=environment(), capture_output=True,
+                                          timeout=60, check=False)
+                shown = run("--help")
+                self.assertEqual(shown.returncode, 0, shown.stderr)
+                self.assertIn(b"Usage:", shown.stdout)
+                refused = run("--nonsense")
+                self.assertEqual(refused.returncode, 2, refused.stderr)
+                self.assertIn(b"--help", refused.stderr)
+                self.assertEqual(refused.stdout, b"")
+        self.assertEqual(list(self.folder.iterdir()), [])
 
 
 if __name__ == "__main__":

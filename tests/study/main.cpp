@@ -47,7 +47,11 @@ int run(int argc, char** argv) {
   app.add_flag("--rebuild", rebuild,
                "with --resume: time the builds of kept materials anew, on a quiet machine");
   app.add_flag("--list", list, "list the materials");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
   if (reduced) {
     options.samples = 200'000;
     options.angles_deg = {0, 45, 85};

@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "figures.hpp"
 #include "reflectree/brdf/material.hpp"
@@ -25,9 +26,11 @@ Example make_example() {
 
 int main(int count, char** arguments) {
   using namespace reflectree;
-  if (count != 2) {
-    std::fputs("usage: method_figures DIRECTORY\n", stderr);
-    return 2;
+  if (count != 2 || arguments[1][0] == '-') {
+    const bool help = count == 2 && std::string_view(arguments[1]) == "--help";
+    std::fputs("Usage: method_figures DIRECTORY\nDraws the figures of docs/method.md as SVG.\n",
+               help ? stdout : stderr);
+    return help ? 0 : 2;
   }
   const std::filesystem::path directory = arguments[1];
   try {
