@@ -40,6 +40,14 @@ struct Lopsided {
   }
 };
 
+// Lopsided where wo grazes, and there alone; a mean over all wo hardly tells.
+struct LopsidedAtGrazing {
+  float operator()(Direction wo, Direction wi) const {
+    const float side = wo.x * wi.y - wo.y * wi.x;
+    return 0.3f + 0.25f * max(0.f, 1 - 4 * wo.z) * side / sqrt(0.02f + side * side);
+  }
+};
+
 // Runs every loop on `threads` threads in uneven chunks, the last chunks first.
 inline Host uneven_threads(int threads) {
   Host host;

@@ -34,6 +34,21 @@ TEST(Asymmetry, SlightlyAndStronglyLopsidedFunctions) {
   }
 }
 
+// On half a square a bound has to cover both mirror images, which no number of leaves mends. The twin is told
+// to use half a square: it cannot keep its promise of trials.
+TEST(Asymmetry, AtSomeElevationsAloneTakesTheWholeSquare) {
+  const AnyBrdf f = LopsidedAtGrazing{};
+  const SamplerData data = build(f);
+  EXPECT_LT(data.report.asymmetry, 0.2f);
+  EXPECT_FALSE(data.domain.half);
+  EXPECT_LE(data.report.expected_trials, 1.25f);
+  expect_right(make_sampler(f, data), f, {0, 60, 88}, "lopsided at grazing");
+  BuildOptions folded;
+  folded.domain = data.domain;
+  folded.domain->half = true;
+  EXPECT_GT(build(f, folded).report.expected_trials, 1.3f);
+}
+
 // A bump away from every landmark, on one side of the plane of incidence.
 TEST(Needle, OffTheLandmarksIsFoundAndSampled) {
   for (const float width : {0.1f, 0.05f}) {
