@@ -159,6 +159,8 @@ TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
       {"<other/>", "no <scene>"},
       {scene_of("<shape type=\"torus\"/>"), "'torus'"},
       {scene_of("<integrator type=\"guess\"/>"), "'guess'"},
+      {scene_of("<integrator type=\"path\"><integer name=\"rr_depth\" value=\"1e81\"/></integrator>"),
+       "whole number"},
       {scene_of("<integrator type=\"path\"><integer name=\"split\" value=\"4\"/></integrator>"), "'split'"},
       {scene_of("<shape type=\"rectangle\"><bsdf type=\"velvet\"/></shape>"), "'velvet'"},
       {scene_of("<shape type=\"rectangle\"><float name=\"radius\" value=\"1\"/></shape>"), "'radius'"},
