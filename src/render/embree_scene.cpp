@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "flat.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/render/profile.hpp"
 
@@ -45,24 +46,22 @@ bool sphere_distance(const Sphere& s, Point o, Direction d, float near, float fa
   return false;
 }
 
-bool disk_distance(const Disk& disk, Point o, Direction d, float near, float far, float& distance) {
-  const Direction n = cross(disk.s, disk.t);
-  const float t = dot(disk.centre - o, n) / dot(d, n);
-  if (!(t > near && t < far)) return false;
-  const Point from = o + t * d - disk.centre;
-  // Solve from = x s + y t in the plane.
-  const float ss = dot(disk.s, disk.s), st = dot(disk.s, disk.t), tt = dot(disk.t, disk.t);
-  const float fs = dot(from, disk.s), ft = dot(from, disk.t), determinant = ss * tt - st * st;
-  const float x = (fs * tt - ft * st) / determinant, y = (ft * ss - fs * st) / determinant;
-  if (!(x * x + y * y <= 1)) return false;
-  return distance = t, true;
+const Flat& flat(const Scene& scene, Hit::Kind kind, unsigned index) {
+  return kind == Hit::Kind::rectangle ? scene.rectangles[index] : scene.disks[index];
 }
 
-bool distance_to(const Scene& scene, Hit::Kind kind, unsigned index, const RTCRay& r, float& distance) {
+template <Hit::Kind kind>
+bool distance_to(const Scene& scene, unsigned index, const RTCRay& r, float& distance) {
   const Point o{r.org_x, r.org_y, r.org_z};
   const Direction d{r.dir_x, r.dir_y, r.dir_z};
-  return kind == Hit::Kind::sphere ? sphere_distance(scene.spheres[index], o, d, r.tnear, r.tfar, distance)
-                                   : disk_distance(scene.disks[index], o, d, r.tnear, r.tfar, distance);
+  if constexpr (kind == Hit::Kind::sphere) {
+    return sphere_distance(scene.spheres[index], o, d, r.tnear, r.tfar, distance);
+  } else {
+    const auto [t, x, y] = crossing(flat(scene, kind, index), o, d);
+    const bool within = kind == Hit::Kind::rectangle ? in_rectangle(x, y) : in_disk(x, y);
+    if (!(within && t > double(r.tnear) && t < double(r.tfar))) return false;
+    return distance = float(t), true;
+  }
 }
 
 // Embree's callbacks; single rays alone are ever traced.
@@ -74,9 +73,11 @@ void bounds(const RTCBoundsFunctionArguments* a) {
     const Sphere& s = scene.spheres[a->primID];
     middle = s.centre, reach = {s.radius, s.radius, s.radius};
   } else {
-    const Disk& d = scene.disks[a->primID];
-    middle = {d.centre.x, d.centre.y, d.centre.z};
-    reach = {std::hypot(d.s.x, d.t.x), std::hypot(d.s.y, d.t.y), std::hypot(d.s.z, d.t.z)};
+    const Flat& f = flat(scene, kind, a->primID);
+    const auto far = [](double s, double t) {
+      return kind == Hit::Kind::rectangle ? std::abs(s) + std::abs(t) : std::hypot(s, t);
+    };
+    middle = f.centre, reach = {far(f.s.x, f.t.x), far(f.s.y, f.t.y), far(f.s.z, f.t.z)};
   }
   const auto put = [](double m, double r, float& low, float& high) {
     const double slack = 1e-6 * (std::abs(m) + r) + 1e-30;
@@ -92,9 +93,8 @@ void meet(const RTCIntersectFunctionNArguments* a) {
   if (!a->valid[0]) return;
   auto& query = *reinterpret_cast<RTCRayHit*>(a->rayhit);
   float distance = 0;
-  if (!distance_to(*static_cast<const Scene*>(a->geometryUserPtr), kind, a->primID, query.ray, distance)) {
+  if (!distance_to<kind>(*static_cast<const Scene*>(a->geometryUserPtr), a->primID, query.ray, distance))
     return;
-  }
   query.ray.tfar = distance;
   query.hit.geomID = a->geomID, query.hit.primID = a->primID;
 }
@@ -104,7 +104,7 @@ void block(const RTCOccludedFunctionNArguments* a) {
   if (!a->valid[0]) return;
   auto& ray = *reinterpret_cast<RTCRay*>(a->ray);
   float distance = 0;
-  if (distance_to(*static_cast<const Scene*>(a->geometryUserPtr), kind, a->primID, ray, distance)) {
+  if (distance_to<kind>(*static_cast<const Scene*>(a->geometryUserPtr), a->primID, ray, distance)) {
     ray.tfar = -std::numeric_limits<float>::infinity();
   }
 }
@@ -148,7 +148,7 @@ void attach_triangles(RTCDevice device, RTCScene world, const Scene& scene) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene) {
+EmbreeScene::EmbreeScene(const Scene& scene) : shapes_(scene) {
   const RTCDevice device = rtcNewDevice(nullptr);
   if (!device) throw Error("cannot start", "Embree", "check the installation");
   device_ = {device, [](void* p) { rtcReleaseDevice(static_cast<RTCDevice>(p)); }};
@@ -157,6 +157,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) {
   rtcSetSceneFlags(world, RTC_SCENE_FLAG_ROBUST);
   attach_triangles(device, world, scene);
   attach_ours<Hit::Kind::sphere>(device, world, scene, scene.spheres.size());
+  attach_ours<Hit::Kind::rectangle>(device, world, scene, scene.rectangles.size());
   attach_ours<Hit::Kind::disk>(device, world, scene, scene.disks.size());
   rtcCommitScene(world);
 }
@@ -170,7 +171,13 @@ std::optional<Hit> EmbreeScene::intersect(Point origin, Direction direction, flo
   rtcInitIntersectContext(&context);
   rtcIntersect1(static_cast<RTCScene>(scene_.get()), &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return Hit{Hit::Kind(query.hit.geomID), query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v};
+  const auto kind = Hit::Kind(query.hit.geomID);
+  Hit hit{kind, query.hit.primID, query.ray.tfar, double(query.hit.u), double(query.hit.v)};
+  if (kind == Hit::Kind::rectangle || kind == Hit::Kind::disk) {
+    const auto [distance, x, y] = crossing(flat(shapes_, kind, hit.index), origin, direction);
+    hit.distance = float(distance), hit.u = x, hit.v = y;
+  }
+  return hit;
 }
 
 bool EmbreeScene::occluded(Point origin, Direction direction, float near, float far) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cosine_lobe.hpp"
+#include "flat.hpp"
 
 namespace reflectree::render {
 
@@ -19,7 +20,6 @@ float area_of(const Scene& scene, const Triangle& t) {
   return length(cross(scene.vertices[t.corner[1]].at - a, scene.vertices[t.corner[2]].at - a)) / 2;
 }
 float area_of(const Sphere& s) { return float(4 * M_PI * s.radius * s.radius); }
-float area_of(const Disk& d) { return pi * length(cross(d.s, d.t)); }
 
 Direction uniform_direction(PathBits& u) {
   const float z = 1 - 2 * to_unit_float(u()), phi = 2 * pi * to_unit_float(u());
@@ -52,7 +52,10 @@ void Emission::enclose() {
   }
   for (const Sphere& s : scene_.spheres)
     hold({float(s.centre.x), float(s.centre.y), float(s.centre.z)}, float(s.radius));
-  for (const Disk& d : scene_.disks) hold(d.centre, std::hypot(length(d.s), length(d.t)));
+  for (const Flat& r : scene_.rectangles) {
+    for (const double x : {-1., 1.}) hold(point_on(r, x, -1), 0), hold(point_on(r, x, 1), 0);
+  }
+  for (const Flat& d : scene_.disks) hold(point_on(d, 0, 0), float(std::hypot(length(d.s), length(d.t))));
   if (low.x > high.x) return;
   centre_ = .5f * (low + high);
   reach_ = 1.0001f * length(high - low) / 2;
@@ -74,8 +77,10 @@ Emission::Emission(const Scene& scene) : scene_(scene) {
     area(Kind::triangle, i, scene.triangles[i].surface, area_of(scene, scene.triangles[i]));
   for (std::size_t i = 0; i < scene.spheres.size(); ++i)
     area(Kind::sphere, i, scene.spheres[i].surface, area_of(scene.spheres[i]));
+  for (std::size_t i = 0; i < scene.rectangles.size(); ++i)
+    area(Kind::rectangle, i, scene.rectangles[i].surface, float(rectangle_area(scene.rectangles[i])));
   for (std::size_t i = 0; i < scene.disks.size(); ++i)
-    area(Kind::disk, i, scene.disks[i].surface, area_of(scene.disks[i]));
+    area(Kind::disk, i, scene.disks[i].surface, float(disk_area(scene.disks[i])));
   for (std::size_t i = 0; i < scene.point_lights.size(); ++i)
     add(Kind::point, i, (4 * pi) * scene.point_lights[i].intensity);
   const float shade = pi * reach_ * reach_;
@@ -99,7 +104,7 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
   const auto i = std::size_t(std::upper_bound(cdf_.begin(), cdf_.end() - 1, pick) - cdf_.begin());
   const double chance = (cdf_[i] - (i > 0 ? cdf_[i - 1] : 0)) / cdf_.back();
   const std::uint32_t index = sources_[i].index;
-  const auto leaving = [&](Hit::Kind kind, float size, float a, float b, Point origin, Direction towards) {
+  const auto leaving = [&](Hit::Kind kind, float size, double a, double b, Point origin, Direction towards) {
     const Interaction on = interaction_at(scene_, {kind, index, 1, a, b}, origin, towards);
     u.begin(1, Decision::light);
     const Direction d = to_world(frame_from_normal(on.normal()), cosine_direction(u));
@@ -109,7 +114,7 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
   Emitted e{};
   switch (sources_[i].kind) {
     case Source::Kind::triangle: {
-      const float root = std::sqrt(to_unit_float(u())), c = root * to_unit_float(u());
+      const double root = std::sqrt(to_unit_double(u())), c = root * to_unit_double(u());
       e = leaving(Hit::Kind::triangle, area_of(scene_, scene_.triangles[index]), root - c, c, {}, {});
       break;
     }
@@ -119,11 +124,14 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
       e = leaving(Hit::Kind::sphere, area_of(s), 0, 0, centre, uniform_direction(u));
       break;
     }
+    case Source::Kind::rectangle: {
+      const auto [x, y] = in_rectangle(u);
+      e = leaving(Hit::Kind::rectangle, float(rectangle_area(scene_.rectangles[index])), x, y, {}, {});
+      break;
+    }
     case Source::Kind::disk: {
-      const Disk& d = scene_.disks[index];
-      const float r = std::sqrt(to_unit_float(u())), phi = 2 * pi * to_unit_float(u());
-      const Point on = d.centre + (r * std::cos(phi)) * d.s + (r * std::sin(phi)) * d.t;
-      e = leaving(Hit::Kind::disk, area_of(d), 0, 0, on, {});
+      const auto [x, y] = in_disk(u);
+      e = leaving(Hit::Kind::disk, float(disk_area(scene_.disks[index])), x, y, {}, {});
       break;
     }
     case Source::Kind::point: {

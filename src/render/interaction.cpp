@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "flat.hpp"
 #include "reflectree/render/embree_scene.hpp"
 
 namespace reflectree::render {
@@ -11,15 +12,15 @@ Interaction on_triangle(const Scene& scene, const Hit& hit) {
   const Triangle& t = scene.triangles[hit.index];
   const Vertex &a = scene.vertices[t.corner[0]], &b = scene.vertices[t.corner[1]],
                &c = scene.vertices[t.corner[2]];
-  const float w = 1 - hit.u - hit.v;
+  const auto u = float(hit.u), v = float(hit.v), w = 1 - u - v;
   const Direction own = cross(b.at - a.at, c.at - a.at);
-  const Direction smooth = w * a.normal + hit.u * b.normal + hit.v * c.normal;
+  const Direction smooth = w * a.normal + u * b.normal + v * c.normal;
   const float size2 = dot(smooth, smooth);
   const Direction shading = size2 > 1e-12f ? (1 / std::sqrt(size2)) * smooth : normalize(own);
-  return {w * a.at + hit.u * b.at + hit.v * c.at,
+  return {w * a.at + u * b.at + v * c.at,
           dot(own, shading) < 0 ? -own : own,
           shading,
-          {w * a.uv.x + hit.u * b.uv.x + hit.v * c.uv.x, w * a.uv.y + hit.u * b.uv.y + hit.v * c.uv.y},
+          {w * a.uv.x + u * b.uv.x + v * c.uv.x, w * a.uv.y + u * b.uv.y + v * c.uv.y},
           t.surface};
 }
 
@@ -36,21 +37,30 @@ Interaction on_sphere(const Sphere& s, Point about) {
           s.surface};
 }
 
-Interaction on_disk(const Disk& d, Point at) {
-  const Direction n = normalize(cross(d.s, d.t));
-  const Point from = at - d.centre;
-  const float x = dot(from, d.s) / dot(d.s, d.s), y = dot(from, d.t) / dot(d.t, d.t);
-  const float turn = std::atan2(y, x) / (2 * pi);
-  return {at, n, n, {std::sqrt(x * x + y * y), turn < 0 ? turn + 1 : turn}, d.surface};
+Interaction on_rectangle(const Flat& r, const Hit& hit) {
+  const auto half = [](double x) { return float((x + 1) / 2); };
+  return {point_on(r, hit.u, hit.v), r.normal, r.normal, {half(hit.u), half(hit.v)}, r.surface};
+}
+
+Interaction on_disk(const Flat& d, const Hit& hit) {
+  const auto x = float(hit.u), y = float(hit.v), turn = std::atan2(y, x) / (2 * pi);
+  const Uv uv{std::sqrt(x * x + y * y), turn < 0 ? turn + 1 : turn};
+  return {point_on(d, hit.u, hit.v), d.normal, d.normal, uv, d.surface};
 }
 
 }  // namespace
 
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction) {
-  if (hit.kind == Hit::Kind::triangle) return on_triangle(scene, hit);
-  const Point at = origin + hit.distance * direction;
-  return hit.kind == Hit::Kind::sphere ? on_sphere(scene.spheres[hit.index], at)
-                                       : on_disk(scene.disks[hit.index], at);
+  switch (hit.kind) {
+    case Hit::Kind::triangle:
+      return on_triangle(scene, hit);
+    case Hit::Kind::rectangle:
+      return on_rectangle(scene.rectangles[hit.index], hit);
+    case Hit::Kind::disk:
+      return on_disk(scene.disks[hit.index], hit);
+    default:
+      return on_sphere(scene.spheres[hit.index], origin + hit.distance * direction);
+  }
 }
 
 }  // namespace reflectree::render

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "flat.hpp"
 #include "reflectree/render/profile.hpp"
 
 namespace reflectree::render {
@@ -14,8 +15,6 @@ namespace {
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
 bool shines(Rgb c) { return c.r + c.g + c.b > 0; }
-
-double area_of(const Disk& d) { return pi_v<double> * double(length(cross(d.s, d.t))); }
 
 // 1 - cos of the cone that a sphere fills, seen from outside; sin^2 / (1 + cos) does not cancel. 0 inside.
 double cone_of(const Sphere& s, Point at) {
@@ -64,6 +63,9 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
   for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
     if (shines(scene.surfaces[scene.spheres[i].surface].radiance)) add(Kind::sphere, i);
   }
+  for (std::size_t i = 0; i < scene.rectangles.size(); ++i) {
+    if (shines(scene.surfaces[scene.rectangles[i].surface].radiance)) add(Kind::rectangle, i);
+  }
   for (std::size_t i = 0; i < scene.disks.size(); ++i) {
     if (shines(scene.surfaces[scene.disks[i].surface].radiance)) add(Kind::disk, i);
   }
@@ -92,7 +94,7 @@ std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
     case Light::Kind::mesh: {
       const double pick = to_unit_double(u()) * light.cdf.back();
       const auto i = std::upper_bound(light.cdf.begin(), light.cdf.end() - 1, pick) - light.cdf.begin();
-      const float root = std::sqrt(to_unit_float(u())), c = root * to_unit_float(u());
+      const double root = std::sqrt(to_unit_double(u())), c = root * to_unit_double(u());
       const Hit hit{Hit::Kind::triangle, light.parts[std::size_t(i)], 0, root - c, c};
       const Interaction on = interaction_at(scene_, hit, {}, {});
       s = sample_area(at, on.at, on.normal(), light.cdf.back(), scene_.surfaces[light.index].radiance);
@@ -103,11 +105,17 @@ std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
       s = sample_sphere(sphere, at, scene_.surfaces[sphere.surface].radiance, u);
       break;
     }
+    case Light::Kind::rectangle: {
+      const Flat& r = scene_.rectangles[light.index];
+      const auto [x, y] = in_rectangle(u);
+      s = sample_area(at, point_on(r, x, y), r.normal, rectangle_area(r),
+                      scene_.surfaces[r.surface].radiance);
+      break;
+    }
     case Light::Kind::disk: {
-      const Disk& d = scene_.disks[light.index];
-      const float r = std::sqrt(to_unit_float(u())), phi = 2 * pi * to_unit_float(u());
-      const Point on = d.centre + (r * std::cos(phi)) * d.s + (r * std::sin(phi)) * d.t;
-      s = sample_area(at, on, normalize(cross(d.s, d.t)), area_of(d), scene_.surfaces[d.surface].radiance);
+      const Flat& d = scene_.disks[light.index];
+      const auto [x, y] = in_disk(u);
+      s = sample_area(at, point_on(d, x, y), d.normal, disk_area(d), scene_.surfaces[d.surface].radiance);
       break;
     }
     case Light::Kind::point: {
@@ -142,7 +150,9 @@ float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interacti
     const double cone = cone_of(s, at);
     return cone > 0 && !s.inwards ? share * float(1 / (2 * M_PI * cone)) : 0;
   }
-  const double area = hit.kind == Hit::Kind::disk ? area_of(scene_.disks[hit.index]) : area_[on.surface];
+  const double area = hit.kind == Hit::Kind::rectangle ? rectangle_area(scene_.rectangles[hit.index])
+                      : hit.kind == Hit::Kind::disk    ? disk_area(scene_.disks[hit.index])
+                                                       : area_[on.surface];
   return share * hit.distance * hit.distance / (cosine * float(area));
 }
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh_files.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
+#include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
 
@@ -29,8 +28,7 @@ void compute_normals(Mesh& mesh) {
   }
 }
 
-Mesh load_obj(const std::string& path, bool face_normals, bool flip_v) {
-  const Bytes bytes = read_file(path, std::uint64_t(1) << 32U);
+Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool flip_v) {
   tinyobj::ObjReader reader;
   if (!reader.ParseFromString(std::string(bytes.begin(), bytes.end()), "")) {
     throw Error("not an OBJ mesh (" + reader.Error() + ")", path, "export it again");

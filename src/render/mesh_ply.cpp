@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "mesh_files.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
+#include "reflectree/io/bytes.hpp"
+#include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
 
@@ -66,7 +66,7 @@ Header read_header(const std::string& text, const std::string& path) {
 // One number after the other.
 class Numbers {
  public:
-  Numbers(const Bytes& bytes, const Header& header, const std::string& path)
+  Numbers(ByteView bytes, const Header& header, const std::string& path)
       : in_(bytes, path), text_(), ascii_(header.ascii), path_(path) {
     in_.seek(header.bytes);
     if (ascii_) {
@@ -117,8 +117,7 @@ void add_face(Mesh& mesh, const std::vector<double>& corners, const std::string&
 
 }  // namespace
 
-Mesh load_ply(const std::string& path, bool face_normals) {
-  const Bytes bytes = read_file(path, std::uint64_t(1) << 32U);
+Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
   const Header header = read_header(std::string(bytes.begin(), bytes.end()), path);
   Numbers numbers(bytes, header, path);
   Mesh mesh;

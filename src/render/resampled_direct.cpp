@@ -28,7 +28,10 @@ Scene lamps_of(const Scene& scene) {
   for (const Sphere& s : scene.spheres) {
     if (shines(s)) lamps.spheres.push_back(s);
   }
-  for (const Disk& d : scene.disks) {
+  for (const Flat& r : scene.rectangles) {
+    if (shines(r)) lamps.rectangles.push_back(r);
+  }
+  for (const Flat& d : scene.disks) {
     if (shines(d)) lamps.disks.push_back(d);
   }
   return lamps;

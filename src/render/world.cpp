@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flat.hpp"
 #include "reflectree/render/profile.hpp"
 
 namespace reflectree::render {
@@ -37,6 +38,12 @@ std::optional<Scattered> PathVertex::sample(PathBits& u) const {
 World::World(const Scene& s) : scene(s), embree(s), lights(s) {
   for (const Vertex& v : scene.vertices) extent = std::max(extent, largest(v.at));
   for (const Sphere& sphere : scene.spheres) extent = std::max(extent, float(sphere.radius));
+  for (const auto* all : {&scene.rectangles, &scene.disks}) {
+    for (const Flat& f : *all) {
+      for (const double x : {-1., 1.})
+        extent = std::max({extent, largest(point_on(f, x, -1)), largest(point_on(f, x, 1))});
+    }
+  }
 }
 
 float World::near(Point at) const { return 5e-5f * std::max(largest(at), .01f * extent); }

@@ -73,7 +73,11 @@ Plastic MaterialReader::plastic_of(Node n) {
 ScatteringPtr MaterialReader::with_sampler(const AnyBrdf& f, const std::string& text) {
   const auto make = [&](const std::string& name, const char* option, const PeerSubject& subject) {
     const SamplerInfo* info = find_sampler(name);
-    if (!info) throw Error("no sampler '" + name + "'", option, "'exact' and 'one-shot' are ours");
+    if (!info) {
+      std::string all;
+      for (const SamplerInfo& known : samplers()) all += (all.empty() ? "" : ", ") + std::string(known.name);
+      throw Error("no sampler '" + name + "'", option, "choose one of " + all);
+    }
     auto sampler = info->make(subject, host_);
     if (!sampler) throw Error("'" + name + "' does not take this material", option, "choose another");
     return std::move(*sampler);

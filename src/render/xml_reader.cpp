@@ -107,6 +107,13 @@ double XmlReader::property(Node n, const char* name, double otherwise) const {
   return c ? number(c, "value", otherwise) : otherwise;
 }
 
+int XmlReader::integer(Node n, const char* name, int otherwise) const {
+  const double v = property(n, name, otherwise);
+  if (!(v >= -1 && v <= 1e9 && v == std::floor(v)))
+    fail(named(n, name), "no whole number between -1 and 1e9", "mend '" + std::string(name) + "'");
+  return int(v);
+}
+
 bool XmlReader::flag(Node n, const char* name, bool otherwise) const {
   const Node c = named(n, name);
   if (!c) return otherwise;

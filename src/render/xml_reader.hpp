@@ -38,6 +38,7 @@ class XmlReader {
   Vec3<double> triple(Node n, const char* attribute) const;
   // Properties of `n`, by name.
   double property(Node n, const char* name, double otherwise) const;
+  int integer(Node n, const char* name, int otherwise) const;
   bool flag(Node n, const char* name, bool otherwise) const;
   std::string word(Node n, const char* name, const std::string& otherwise) const;
   Vec3<double> point(Node n, const char* name, Vec3<double> otherwise) const;

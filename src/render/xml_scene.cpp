@@ -41,12 +41,12 @@ class SceneReader {
     t.method = *method;
     if (t.method == Transport::Method::direct) {
       xml_.only(n, {"shading_samples"});
-      t.split = int(xml_.property(n, "shading_samples", 0));
+      t.split = xml_.integer(n, "shading_samples", 0);
       return;
     }
     if (t.method == Transport::Method::photons) {
       xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather"});
-      t.photons.count = int(xml_.property(n, "photon_count", 0));
+      t.photons.count = xml_.integer(n, "photon_count", 0);
       t.photons.radius = float(xml_.property(n, "radius", 0));
       t.photons.shrink = float(xml_.property(n, "alpha", 2 / 3.));
       t.photons.gather = xml_.flag(n, "final_gather", true);
@@ -55,9 +55,9 @@ class SceneReader {
     } else {
       xml_.only(n, {"max_depth", "rr_depth", "split"});
     }
-    t.split = int(xml_.property(n, "split", 0));
-    scene_.max_depth = int(xml_.property(n, "max_depth", -1));
-    scene_.rr_depth = int(xml_.property(n, "rr_depth", 5));
+    t.split = xml_.integer(n, "split", 0);
+    scene_.max_depth = xml_.integer(n, "max_depth", -1);
+    scene_.rr_depth = xml_.integer(n, "rr_depth", 5);
   }
 
   void read_filter(Node n) {

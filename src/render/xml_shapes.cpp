@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "xml_shapes.hpp"
 
-#include "mesh_files.hpp"
+#include "flat.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
 
 namespace {
-
-Mesh rectangle() {
-  const Direction up{0, 0, 1};
-  return {{{{-1, -1, 0}, up, {0, 0}},
-           {{1, -1, 0}, up, {1, 0}},
-           {{1, 1, 0}, up, {1, 1}},
-           {{-1, 1, 0}, up, {0, 1}}},
-          {{0, 1, 2}, {0, 2, 3}}};
-}
 
 // Six rectangles from -1 to 1, normals outwards.
 Mesh cube() {
@@ -73,6 +66,19 @@ void add_sphere(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::u
                            surface});
 }
 
+void add_flat(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::uint32_t surface,
+              std::vector<Flat>& all) {
+  const Direction normal = apply_to_normal(m, {0, 0, 1});
+  const Flat flat{apply_double(m, {}, 1), apply_double(m, {1, 0, 0}, 0), apply_double(m, {0, 1, 0}, 0),
+                  flip ? -normal : normal, surface};
+  const double area = rectangle_area(flat);
+  for (const double x : {-1., 1.}) {
+    if (!finite(point_on(flat, x, -1)) || !finite(point_on(flat, x, 1)) || !std::isfinite(float(area)))
+      xml.fail(n, "corners that are not finite", "mend the transform");
+  }
+  if (area > 0) all.push_back(flat);
+}
+
 }  // namespace
 
 void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& scene) {
@@ -98,28 +104,26 @@ void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& 
   const std::string type = XmlReader::type(n);
   const Matrix m = xml.transform(XmlReader::named(n, "to_world"));
   const bool flip = xml.flag(n, "flip_normals", false), flat = xml.flag(n, "face_normals", false);
-  const auto file = [&] { return xml.beside(xml.word(n, "filename", "")); };
   if (type == "sphere") {
     xml.only(n, {"center", "radius", "to_world", "bsdf", "ref", "emitter", "flip_normals"});
     add_sphere(xml, n, m, flip, index, scene);
     return;
   }
-  if (type == "disk") {
+  if (type == "disk" || type == "rectangle" || type == "cube") {
     xml.only(n, {"to_world", "bsdf", "ref", "emitter", "flip_normals"});
-    const Point s = apply(m, {1, 0, 0}, 0), t = apply(m, {0, 1, 0}, 0);
-    const Disk disk{apply(m, {}, 1), flip ? t : s, flip ? s : t, index};
-    if (length(cross(s, t)) > 0) scene.disks.push_back(disk);
-    return;
-  }
-  if (type == "rectangle" || type == "cube") {
-    xml.only(n, {"to_world", "bsdf", "ref", "emitter", "flip_normals"});
-    add_mesh(xml, n, type == "cube" ? cube() : rectangle(), m, flip, index, scene);
+    if (type == "cube") {
+      add_mesh(xml, n, cube(), m, flip, index, scene);
+    } else {
+      add_flat(xml, n, m, flip, index, type == "disk" ? scene.disks : scene.rectangles);
+    }
   } else if (type == "obj" || type == "ply") {
     xml.only(n, {"filename", "to_world", "bsdf", "ref", "emitter", "face_normals", "flip_normals",
                  "flip_tex_coords"});
     const bool flip_v = xml.flag(n, "flip_tex_coords", true);
-    add_mesh(xml, n, type == "obj" ? load_obj(file(), flat, flip_v) : load_ply(file(), flat), m, flip, index,
-             scene);
+    const std::string path = xml.beside(xml.word(n, "filename", ""));
+    const Bytes bytes = read_file(path, largest_mesh_file);
+    add_mesh(xml, n, type == "obj" ? read_obj(bytes, path, flat, flip_v) : read_ply(bytes, path, flat), m,
+             flip, index, scene);
   } else {
     xml.unknown(n);
   }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "targets.hpp"
 
-#include <cstdlib>
-
 #include "../io/synthetic.hpp"
 #include "../io/synthetic_sampler.hpp"
+#include "expect.hpp"
 #include "reflectree/brdf/material.hpp"
 #include "reflectree/brdf/registry.hpp"
-#include "reflectree/error.hpp"
 #include "reflectree/io/checksum.hpp"
 #include "reflectree/io/material_file.hpp"
 #include "reflectree/io/merl.hpp"
@@ -19,10 +17,6 @@
 namespace reflectree::fuzz {
 namespace {
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
 void require_sound(const AnyBrdf& f) {
   const Direction up{0, 0, 1}, tilted{0.6f, 0, 0.8f}, mirror{-0.6f, 0, 0.8f}, aside{0, 0.96f, 0.28f},
       grazing{0.99999995f, 0, 1.7453292e-5f};
@@ -31,15 +25,6 @@ void require_sound(const AnyBrdf& f) {
   std::vector<float> values(std::size(wo) * std::size_t(f.channels()));
   f.eval(wo, wi, values);
   for (const float v : values) require(v >= 0 && std::isfinite(v));
-}
-
-template <class Run>
-void expect_error_or_success(Run run) {
-  try {
-    run();
-  } catch (const Error& e) {
-    require(std::string_view(e.what()).find('\n') == std::string_view::npos);
-  }
 }
 
 void run_rgl(ByteView bytes) {

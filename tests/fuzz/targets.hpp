@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is fuzzed: each target feeds arbitrary bytes to one reader. Error is a fine answer; whatever is
-// accepted must evaluate to finite values that are not negative; anything else aborts.
+// accepted must make sense: functions have finite values that are not negative, corners of triangles exist, a
+// scene renders; anything else aborts.
 #pragma once
 
 #include <span>
@@ -17,7 +18,7 @@ struct Target {
   std::vector<Bytes> (*seeds)();  // small valid inputs, made from formulas
 };
 
-// rgl, merl, table, material, sampler, grammar
+// targets.cpp: rgl, merl, table, material, sampler, grammar; render_targets.cpp: ply, obj, scene.
 std::span<const Target> targets();
 
 }  // namespace reflectree::fuzz

@@ -141,8 +141,8 @@ TEST(Adjoint, PhotonsOnNonReciprocalWallsBringWhatPathTracingFinds) {
 // it to the wall is right only with Veach's factor for shading normals.
 TEST(Adjoint, ShadingNormalsBringPhotonsWhatPathTracingFinds) {
   const auto leaning = [](Scene scene) {
-    for (const std::uint32_t c : {0U, 1U, 2U, 3U})
-      scene.vertices[c].normal = direction_from_angles(.7f, pi / 2);
+    add_triangles(scene, scene.rectangles.front(), direction_from_angles(.7f, pi / 2));
+    scene.rectangles.erase(scene.rectangles.begin());
     return scene;
   };
   const Scene flat = lit_from_below(diffuse({{.9f, .9f, .9f}, nullptr}));

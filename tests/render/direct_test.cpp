@@ -81,7 +81,7 @@ TEST(Direct, SamplersWithoutADensitySeeEveryLight) {
   const AnyBrdf f(OneWay{});
   const Scene seeing = one_way(sampled(f, one_shot_of(f))),
               blind = one_way(sampled(f, AnySampler<Spectrum>("blind", Blind{one_shot_of(f)})));
-  ASSERT_FALSE(blind.surfaces[blind.triangles[0].surface].scattering->has_pdf());
+  ASSERT_FALSE(blind.surfaces[blind.rectangles[0].surface].scattering->has_pdf());
   const Sight reference = look(seeing, 8, 256, 1);
   for (const Method method : {Method::path, Method::recursive, Method::photons}) {
     Scene scene = blind, dark = blind;

@@ -159,6 +159,8 @@ TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
       {"<other/>", "no <scene>"},
       {scene_of("<shape type=\"torus\"/>"), "'torus'"},
       {scene_of("<integrator type=\"guess\"/>"), "'guess'"},
+      {scene_of("<integrator type=\"path\"><integer name=\"rr_depth\" value=\"1e81\"/></integrator>"),
+       "whole number"},
       {scene_of("<integrator type=\"path\"><integer name=\"split\" value=\"4\"/></integrator>"), "'split'"},
       {scene_of("<shape type=\"rectangle\"><bsdf type=\"velvet\"/></shape>"), "'velvet'"},
       {scene_of("<shape type=\"rectangle\"><float name=\"radius\" value=\"1\"/></shape>"), "'radius'"},
@@ -172,6 +174,9 @@ TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
       {scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><rotate "
                 "angle=\"9\"/></transform></shape>"),
        "finite"},
+      {scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><scale "
+                "value=\"1e200\"/></transform></shape>"),
+       "not finite"},
       {scene_of("<shape type=\"obj\"><string name=\"filename\" value=\"nothing.obj\"/></shape>"),
        "no such file"},
       {"<scene><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"0\"/>"
@@ -216,11 +221,14 @@ TEST(Render, EveryTechniqueConvergesToTheSameImage) {
   }
 }
 
-TEST(Render, DegenerateTrianglesAreLeftOut) {
-  const Scene scene = parse_scene(
-      scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"0\"/></transform></shape>"),
-      "flat.xml");
-  EXPECT_TRUE(scene.triangles.empty());
+TEST(Render, ShapesWithoutAreaAreLeftOut) {
+  const std::string none = "<transform name=\"to_world\"><scale x=\"0\"/></transform></shape>";
+  const Scene scene = parse_scene(scene_of("<shape type=\"rectangle\">" + none + "<shape type=\"disk\">" +
+                                           none + "<shape type=\"cube\">" + none),
+                                  "flat.xml");
+  EXPECT_TRUE(scene.rectangles.empty());
+  EXPECT_TRUE(scene.disks.empty());
+  EXPECT_EQ(scene.triangles.size(), 4) << "two sides of the cube are left";
   EXPECT_EQ(mean_of(render(scene, {.samples = 1, .seed = 1})).value, 0);
 }
 

@@ -92,7 +92,7 @@ inline Scene one_way(const ScatteringPtr& walls) {
       </shape>)",
                   "0,-4,1.5"),
       "one-way.xml");
-  for (const Triangle& t : scene.triangles) scene.surfaces[t.surface].scattering = walls;
+  for (const Flat& r : scene.rectangles) scene.surfaces[r.surface].scattering = walls;
   return scene;
 }
 
@@ -109,7 +109,7 @@ inline Scene lit_from_below(const ScatteringPtr& floor) {
       <rgb name="irradiance" value="2"/></emitter>)",
           "0,-3,1.5"),
       "below.xml");
-  scene.surfaces[scene.triangles[0].surface].scattering = floor;
+  scene.surfaces[scene.rectangles[0].surface].scattering = floor;
   return scene;
 }
 
@@ -139,6 +139,18 @@ inline Scene gem() {
     scene.triangles.push_back({{first + (k + 1) % 4, first + k, first + 5}, surface});
   }
   return scene;
+}
+
+// A rectangle as two triangles with one shading normal.
+inline void add_triangles(Scene& scene, const Flat& f, Direction normal) {
+  const auto first = std::uint32_t(scene.vertices.size());
+  for (const auto& [x, y] : {Vec2<double>{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+    const Vec3<double> p = f.centre + x * f.s + y * f.t;
+    scene.vertices.push_back(
+        {{float(p.x), float(p.y), float(p.z)}, normal, {float((x + 1) / 2), float((y + 1) / 2)}});
+  }
+  scene.triangles.push_back({{first, first + 1, first + 2}, f.surface});
+  scene.triangles.push_back({{first, first + 2, first + 3}, f.surface});
 }
 
 struct Sight {

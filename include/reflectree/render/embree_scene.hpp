@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's shapes in Embree 3, robust; spheres and disks are ours. Nothing else knows Embree.
+// The scene's shapes in Embree 3, robust; spheres, rectangles and disks are ours. Nothing else knows Embree.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 namespace reflectree::render {
 
 struct Hit {
-  enum class Kind : std::uint8_t { triangle, sphere, disk } kind;
+  enum class Kind : std::uint8_t { triangle, sphere, rectangle, disk } kind;
   std::uint32_t index;
   float distance;
-  float u, v;  // a triangle's barycentric weights of its second and third corner
+  double u, v;  // a triangle's barycentric weights of its second and third corner; a flat shape's x and y
 };
 
 class EmbreeScene {
@@ -23,6 +23,7 @@ class EmbreeScene {
   bool occluded(Point origin, Direction direction, float near, float far) const;
 
  private:
+  const Scene& shapes_;
   std::shared_ptr<void> device_, scene_;
 };
 

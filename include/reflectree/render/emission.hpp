@@ -25,7 +25,7 @@ class Emission {
 
  private:
   struct Source {
-    enum class Kind { triangle, sphere, disk, point, directional, environment } kind;
+    enum class Kind { triangle, sphere, rectangle, disk, point, directional, environment } kind;
     std::uint32_t index;
   };
   void enclose();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every light of a scene, one of them drawn for a point that is lit. All are equally likely: meshes (then
-// uniform in area), spheres (uniform in the cone they fill), disks, points, directions and the environment.
+// uniform in area, as rectangles and disks are), spheres (uniform in the cone they fill), points, directions
+// and the environment.
 #pragma once
 
 #include "reflectree/render/embree_scene.hpp"
@@ -27,7 +28,7 @@ class Lights {
 
  private:
   struct Light {
-    enum class Kind { mesh, sphere, disk, point, directional, environment } kind;
+    enum class Kind { mesh, sphere, rectangle, disk, point, directional, environment } kind;
     std::uint32_t index;               // among its kind; of a mesh, its surface
     std::vector<std::uint32_t> parts;  // triangles
     std::vector<double> cdf;           // of their areas

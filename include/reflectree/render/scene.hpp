@@ -40,9 +40,11 @@ struct Sphere {
   Frame<float> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::uint32_t surface = 0;
 };
-// The image of the unit circle: centre + x s + y t; its normal is s x t.
-struct Disk {
-  Point centre, s, t;
+// Of a plane, centre + x s + y t: a rectangle where |x|, |y| <= 1, a disk where x^2 + y^2 <= 1 (or what a
+// transform makes of them). Intersected in double precision. `normal`: along s x t or against it.
+struct Flat {
+  Vec3<double> centre, s, t;
+  Direction normal{0, 0, 1};
   std::uint32_t surface = 0;
 };
 
@@ -82,7 +84,7 @@ struct Scene {
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
   std::vector<Sphere> spheres;
-  std::vector<Disk> disks;
+  std::vector<Flat> rectangles, disks;
   std::vector<Surface> surfaces;
   std::vector<PointLight> point_lights;
   std::vector<DirectionalLight> directional_lights;

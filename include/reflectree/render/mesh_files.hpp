@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "reflectree/io/bytes.hpp"
 #include "reflectree/render/scene.hpp"
 
 namespace reflectree::render {
@@ -14,9 +15,10 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// Polygons become fans. Throw Error.
-Mesh load_obj(const std::string& path, bool face_normals, bool flip_v);
-Mesh load_ply(const std::string& path, bool face_normals);
+// Polygons become fans. `path` is named by errors. Throw Error.
+Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool flip_v);
+Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals);
+inline constexpr std::uint64_t largest_mesh_file = std::uint64_t(1) << 32U;
 
 // The triangles' normals, weighted by the angle at the vertex (Thuermer & Wuethrich 1998).
 void compute_normals(Mesh& mesh);
