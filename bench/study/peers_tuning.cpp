@@ -47,8 +47,8 @@ std::vector<Subject> subjects() {
     all.push_back(subject_of(text, {make_brdf(material), material, {}}));
   }
   const char* folder = std::getenv("REFLECTREE_DATA");
-  if (!folder) std::fprintf(stderr, "no measured materials: REFLECTREE_DATA is not set\n");
-  if (folder) {
+  if (!folder || !*folder) std::fprintf(stderr, "no measured materials: REFLECTREE_DATA is not set\n");
+  if (folder && *folder) {
     for (const std::string name : {"cardboard", "satin_purple", "chm_mint"}) {
       const std::string path = std::string(folder) + "/rgl/" + name + "_rgb.bsdf";
       all.push_back(subject_of(name, {load_brdf(path), {}, {}}));

@@ -18,7 +18,7 @@ namespace {
 
 std::string measured(const char* name) {
   const char* folder = std::getenv("REFLECTREE_DATA");
-  return folder ? std::string(folder) + "/rgl/" + name + "_rgb.bsdf" : "";
+  return folder && *folder ? std::string(folder) + "/rgl/" + name + "_rgb.bsdf" : "";
 }
 struct Made {
   PeerSubject subject;

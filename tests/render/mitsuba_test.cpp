@@ -60,7 +60,7 @@ std::vector<Pair> pairs_of(const std::string& data, const std::string& material)
 
 TEST(MitsubaValues, MaterialsReturnTheSame) {
   const char* data = std::getenv("REFLECTREE_DATA");
-  if (!data) GTEST_SKIP() << "REFLECTREE_DATA is not set";
+  if (!data || !*data) GTEST_SKIP() << "REFLECTREE_DATA is not set";
   const Texture white{{1, 1, 1}, nullptr};
   const Rgb eta{.2f, .9f, 1.1f}, k{3.9f, 2.4f, 2.2f};
   const std::pair<const char*, ScatteringPtr> all[] = {
@@ -94,7 +94,7 @@ class Mitsuba : public testing::TestWithParam<const char*> {};
 
 TEST_P(Mitsuba, ShowsTheSamePicture) {
   const char* data = std::getenv("REFLECTREE_DATA");
-  if (!data) GTEST_SKIP() << "REFLECTREE_DATA is not set";
+  if (!data || !*data) GTEST_SKIP() << "REFLECTREE_DATA is not set";
   Scene scene = load_scene(std::string(data) + "/scenes/" + GetParam() + ".mitsuba.xml");
   Image ours = render(scene, {.samples = 8, .seed = 1});
   const Image theirs = read_image(std::string(data) + "/reference/" + GetParam() + ".exr");
