@@ -6,6 +6,7 @@
 
 #include "cosine_lobe.hpp"
 #include "flat.hpp"
+#include "reflectree/render/profile.hpp"
 
 namespace reflectree::render {
 
@@ -100,6 +101,7 @@ Emitted Emission::from_far(Direction direction, Rgb irradiance, PathBits& u) con
 
 std::optional<Emitted> Emission::sample(PathBits& u) const {
   if (sources_.empty()) return std::nullopt;
+  const InPhase sampling(Phase::sample);
   const double pick = to_unit_double(u()) * cdf_.back();
   const auto i = std::size_t(std::upper_bound(cdf_.begin(), cdf_.end() - 1, pick) - cdf_.begin());
   const double chance = (cdf_[i] - (i > 0 ? cdf_[i - 1] : 0)) / cdf_.back();

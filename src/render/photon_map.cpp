@@ -57,7 +57,7 @@ Rgb PhotonMap::reflected(const PathVertex& at, int fewest, int most) const {
   Rgb sum;
   near(at.on.at, [&](const Photon& p, float share) {
     if (p.edges < fewest || p.edges > most) return;
-    const Rgb f_cos = at.scattering().f_cos(at.wo, to_local(at.frame, p.wi), at.on.uv);
+    const Rgb f_cos = at.f_cos(to_local(at.frame, p.wi));
     sum = sum + (1 - share) * (f_cos * p.etendue);
   });
   return (2 / (pi * radius_ * radius_)) * sum;

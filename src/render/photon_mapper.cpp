@@ -95,7 +95,7 @@ Rgb PhotonMapper::follow(Point origin, Direction direction, int depth, std::uint
     if (edges_left(depth) == 0) return result;
     if (!at.scattering().only_delta()) return result + throughput * leaving(at, depth, split, u);
     u.begin(depth, Decision::surface);
-    const auto next = at.scattering().sample(at.wo, at.on.uv, u);
+    const auto next = at.sample(u);
     if (!next) return result;
     throughput = throughput * next->weight;
     if (depth >= world_.scene.rr_depth) {
@@ -110,8 +110,7 @@ Rgb PhotonMapper::follow(Point origin, Direction direction, int depth, std::uint
 }
 
 Rgb PhotonMapper::leaving(const PathVertex& at, int depth, std::uint32_t split, PathBits& u) const {
-  const Scattering& scattering = at.scattering();
-  const bool competes = scattering.has_pdf();
+  const bool competes = at.scattering().has_pdf();
   const std::uint32_t n = options_.gather ? split : 1;
   std::array<PathBits, max_split> branches;
   std::array<Scattered, max_split> next;
@@ -122,8 +121,7 @@ Rgb PhotonMapper::leaving(const PathVertex& at, int depth, std::uint32_t split, 
     sum = sum + world_.direct(at, technique_, branches[k]);
     branches[k].begin(depth, Decision::surface);
   }
-  const std::size_t filled =
-      scattering.sample_n(at.wo, at.on.uv, std::span(branches).first(n), std::span(next).first(n));
+  const std::size_t filled = at.sample_n(std::span(branches).first(n), std::span(next).first(n));
   for (std::size_t i = 0; i < filled; ++i)
     sum = sum + next[i].weight * beyond(at, next[i], depth + 1, competes, branches[i]);
   const int edges = edges_left(depth);
@@ -166,7 +164,7 @@ Rgb PhotonMapper::gathered(PathVertex at, int depth, PathBits& u) const {
     if (!scattering.only_delta()) result = result + throughput * maps_.all.reflected(at, 1, edges);
     if (scattering.lobes() == Lobes::finite) return result;
     u.begin(depth, Decision::surface);
-    const auto next = scattering.sample(at.wo, at.on.uv, u);
+    const auto next = at.sample(u);
     if (!next || !next->delta) return result;
     throughput = throughput * next->weight;
     const float survive = std::min(.95f, largest(throughput));

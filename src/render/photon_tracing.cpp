@@ -29,12 +29,11 @@ void trace(const World& world, const Emission& emission, float share, PathBits& 
         world.embree.intersect(origin, direction, edges > 1 || start->inside ? world.near(origin) : 0);
     if (!hit) return;
     const PathVertex at(world.scene, *hit, origin, direction);
-    const Scattering& scattering = at.scattering();
     const float cosine = std::abs(dot(at.on.normal(), direction));
-    if (!scattering.only_delta() && cosine > 1e-6f)
+    if (!at.scattering().only_delta() && cosine > 1e-6f)
       out.push_back({at.on.at, -direction, (1 / cosine) * power, std::uint16_t(edges), edges > 1 && deltas});
     u.begin(edges, Decision::surface);
-    const auto next = scattering.sample_adjoint(at.wo, at.on.uv, u);
+    const auto next = at.sample_adjoint(u);
     if (!next) return;
     direction = normalize(to_world(at.frame, next->wi));
     // Where shading and true normals differ, |cos_s wi cos_g wo / (cos_g wi cos_s wo)| keeps to what a path

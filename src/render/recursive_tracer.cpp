@@ -67,7 +67,7 @@ Rgb RecursiveTracer::leaving(const PathVertex& at, const Ray& ray, std::span<Pat
     }
     bits.begin(ray.depth, Decision::surface);
   }
-  const std::size_t filled = scattering.sample_n(at.wo, at.on.uv, u, next);
+  const std::size_t filled = at.sample_n(u, next);
   const std::size_t split = scattering.only_delta() ? ray.split : std::max<std::size_t>(1, ray.split / 4);
   for (std::size_t i = 0; i < filled; ++i) {
     Rgb weight = next[i].weight;

@@ -69,7 +69,7 @@ Rgb ResampledDirect::reflected(const PathVertex& at, PathBits& u) const {
   u.begin(1, Decision::light);
   if (const auto light = world_.lights.sample(at.on.at, u); light && light->delta) {
     const Direction wi = to_local(at.frame, light->direction);
-    const Rgb arriving = at.scattering().f_cos(at.wo, wi, at.on.uv) * light->radiance;
+    const Rgb arriving = at.f_cos(wi) * light->radiance;
     if (arriving != Rgb{} && world_.sees(at.on.at, light->direction, light->distance))
       result = (1 / light->pdf) * arriving;
   }
@@ -79,8 +79,8 @@ Rgb ResampledDirect::reflected(const PathVertex& at, PathBits& u) const {
     branches[k] = u.branch(k, std::uint32_t(candidates_));
     branches[k].begin(1, Decision::surface);
   }
-  const std::size_t filled = at.scattering().sample_n(at.wo, at.on.uv, std::span(branches).first(candidates_),
-                                                      std::span(drawn).first(candidates_));
+  const std::size_t filled =
+      at.sample_n(std::span(branches).first(candidates_), std::span(drawn).first(candidates_));
   float sum = 0, kept_q = 0;
   Rgb kept;
   Direction kept_direction{};

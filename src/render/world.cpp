@@ -30,9 +30,24 @@ Scattering::Value PathVertex::value(Direction wi) const {
   return scattering().value(wo, wi, on.uv);
 }
 
+Rgb PathVertex::f_cos(Direction wi) const {
+  const InPhase evaluating(Phase::eval);
+  return scattering().f_cos(wo, wi, on.uv);
+}
+
 std::optional<Scattered> PathVertex::sample(PathBits& u) const {
   const InPhase sampling(Phase::sample);
   return scattering().sample(wo, on.uv, u);
+}
+
+std::size_t PathVertex::sample_n(std::span<PathBits> u, std::span<Scattered> out) const {
+  const InPhase sampling(Phase::sample);
+  return scattering().sample_n(wo, on.uv, u, out);
+}
+
+std::optional<Scattered> PathVertex::sample_adjoint(PathBits& u) const {
+  const InPhase sampling(Phase::sample);
+  return scattering().sample_adjoint(wo, on.uv, u);
 }
 
 World::World(const Scene& s) : scene(s), embree(s), lights(s) {

@@ -22,6 +22,16 @@ class Render(ProgramTest):
         self.assertGreater(found["traversal"], 0)
         self.assertAlmostEqual(sum(found[k] for k in ("traversal", "sample", "eval", "rest")), 1, places=6)
 
+    def test_profile_books_every_integrator(self):
+        # Drawing directions exactly is what takes longest here; lights alone are a twentieth.
+        glossy = self.write("glossy.xml", SCENE.replace("diffuse", "reflectree").replace(
+            '<rgb name="reflectance" value="$grey"/>', '<string name="material" value="ggx:alpha=0.3"/>').encode())
+        for options in (["recursive", "--technique", "brdf", "--spp", 64], ["photons", "--radius", 0.1, "--spp", 192],
+                        ["direct", "--technique", "resampled", "--spp", 128]):
+            found = self.json_of("render", glossy, "--sampler", "exact", "--profile", "--integrator", *options)
+            self.assertGreater(found["timer_rings"], 20)
+            self.assertGreater(found["sample"], 0.15, f"{options}: {found}")
+
     def test_a_film_goes_on_with_its_own_scene_alone(self):
         self.run_program("render", self.scene, "--spp", 2)
         self.run_program("render", self.scene, "--spp", 4, "--resume")

@@ -26,8 +26,12 @@ struct PathVertex {
   Direction wo;
   const Surface* surface;
   const Scattering& scattering() const { return *surface->scattering; }
+  // What its material says, booked for --profile.
   Scattering::Value value(Direction wi) const;
+  Rgb f_cos(Direction wi) const;
   std::optional<Scattered> sample(PathBits& u) const;
+  std::size_t sample_n(std::span<PathBits> u, std::span<Scattered> out) const;
+  std::optional<Scattered> sample_adjoint(PathBits& u) const;  // light comes from wo
   // Light that it emits back.
   Rgb emitted() const { return wo.z > 0 ? surface->radiance : Rgb{}; }
 };
