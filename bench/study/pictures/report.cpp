@@ -100,9 +100,12 @@ void add_scene(Page& page, const Results& results, const Plan& plan, const Setti
     if (t.rows.empty()) continue;
     page.part(words[i]);
     page.table(t);
+    const Cells ours = results.of(setting.name, names[i], plan.ours);
     std::vector<study::Bar> bars;
-    for (const auto& row : t.rows)
-      bars.push_back({row[0], std::atof(row.back().c_str()), row[0] == plan.ours || row[0] == "exact"});
+    for (const auto& row : t.rows) {
+      const Estimate e = ratio_at_time(results.of(setting.name, names[i], row[0]), ours);
+      bars.push_back({row[0], e.value, row[0] == plan.ours || row[0] == "exact"});
+    }
     page.figure(study::bar_figure("relMSE at equal time", plan.ours + " = 1", bars));
   }
   std::string absent;
@@ -135,7 +138,7 @@ Page page_of(const Results& results, const Plan& plan) {
       n(plan.reference) + " samples of another seed.";
   page.command("REFLECTREE_DATA=... study_pictures FOLDER --seeds " + n(plan.rounds) + " --seed " +
                std::to_string(plan.seed));
-  add_verdict(page, results, judge(results, methods(), plan.ours));
+  add_verdict(page, judge(results, methods(), plan.ours));
   for (const Setting* setting : plan.settings) add_scene(page, results, plan, *setting);
   add_ways(page, results, plan);
   page.section("How it is measured");

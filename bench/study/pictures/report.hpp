@@ -34,7 +34,7 @@ std::vector<std::string> shown_samplers();
 std::string picture_file(const Setting& setting, const std::string& sampler, bool error);
 
 // Parts of the page, in a file each.
-void add_verdict(Page& page, const Results& results, const Verdict& verdict);
+void add_verdict(Page& page, const Verdict& verdict);
 void add_scene(Page& page, const Results& results, const Plan& plan, const Setting& setting);
 void add_ways(Page& page, const Results& results, const Plan& plan);
 

@@ -65,7 +65,7 @@ Table losses(const Verdict& v) {
 
 }  // namespace
 
-void add_verdict(Page& page, const Results&, const Verdict& v) {
+void add_verdict(Page& page, const Verdict& v) {
   page.section("Verdict");
   if (v.against.empty()) {
     page.words("Nothing to compare yet.");
