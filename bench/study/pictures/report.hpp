@@ -14,7 +14,7 @@ struct Plan {
   int samples = 25;      // a pixel
   int rounds = 4;        // seeds
   int other_rounds = 3;  // of the other two integrators
-  int reference = 512;   // samples of the converged picture
+  int reference = 400;   // samples of the converged picture
   int directions = 16;   // a pixel, where ways of reducing variance are combined
   std::uint64_t seed = 1;
   std::string ours = "one-shot";      // whom the verdict is about
