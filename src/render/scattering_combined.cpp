@@ -33,7 +33,8 @@ struct Sampled final : Scattering {
   std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
     if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, uv, u, out);
     if (!(wo.z > 0)) return 0;
-    std::array<DirectionSample<Spectrum>, max_split> drawn;
+    // Once a thread: a spectrum has room for 256 channels, and clearing 64 of them costs more than drawing.
+    thread_local std::array<DirectionSample<Spectrum>, max_split> drawn;
     UniformBits bits = u[0].lend();
     const std::size_t filled = sampler.sample_n(wo, bits, std::span(drawn).first(u.size()));
     u[0].take_back(bits);

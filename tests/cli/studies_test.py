@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The studies: study_paper measures real MERL files where a folder of them is given; the scenes of study_pictures
-render; every study tells its usage."""
+"""The studies: study_paper measures real MERL files where a folder of them is given; study_pictures judges, and goes
+on where it was interrupted; its scenes render; every study tells its usage."""
 import os
 import pathlib
+import signal
 import subprocess
 import unittest
 
@@ -43,13 +44,91 @@ class StudyPaper(ProgramTest):
 
 
 class StudyPictures(ProgramTest):
+    SCENES = pathlib.Path(__file__).parents[2] / "bench" / "study" / "scenes"
+    SMALL = ["--quick", "--seeds", "2", "--other-seeds", "1", "--reference", "32", "--only", "retro", "--parts", "path"]
+
+    def start(self, *args):
+        program = os.environ["REFLECTREE_STUDY_PICTURES"]
+        return subprocess.Popen([program, *args, "--scenes", self.SCENES], cwd=self.folder, env=environment(),
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def study(self, *args, code=0):
+        with self.start(*args) as child:
+            _, words = child.communicate(timeout=300)
+        self.assertEqual(child.returncode, code, words)
+        return words
+
+    def page(self, folder):
+        return (self.folder / folder / "pictures.md").read_text()
+
+    def rows(self, folder):
+        """Of the scene's table: sampler to figures."""
+        text = self.page(folder).split("### Path tracing")[1]
+        cells = [[c.strip() for c in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("|")]
+        return {row[0]: row[1:] for row in cells[2:]}
+
+    def test_our_sampler_is_judged_and_a_worse_one_in_its_place_loses(self):
+        self.study("ours", *self.SMALL, "--samplers", "cosine,proxy,adaptive-cdf")
+        page = self.page("ours")
+        self.assertIn("every scene: holds (2 of 2; 0 are out of reach)", page)
+        self.assertRegex(page, r"retro \| path \| cosine \|.*\| reached \|")
+        self.assertIn("within two standard errors: holds", page)
+        self.assertEqual(set(self.rows("ours")), {"one-shot", "exact", "cosine", "proxy", "adaptive-cdf"})
+        for name in ("reference", "cosine", "one-shot", "one-shot-error"):
+            data = (self.folder / "ours" / f"pictures-retro-{name}.png").read_bytes()
+            self.assertTrue(data.startswith(b"\x89PNG"))
+        html = (self.folder / "ours" / "pictures.html").read_text()
+        self.assertEqual(html.count("data:image/png"), 9)  # 1 converged, 4 samplers with their errors
+        self.assertNotIn("http", html.replace("http://www.w3.org", ""))
+        # The twin: the cosine lobe in one-shot mode's place.
+        self.study("twin", *self.SMALL, "--samplers", "proxy,adaptive-cdf", "--ours", "cosine")
+        page = self.page("twin")
+        self.assertIn("every scene: does not hold (0 of 1", page)
+        self.assertRegex(page, r"retro \| path \| proxy \|.*\| missed \|")
+        self.assertIn("within two standard errors: does not hold", page)
+        self.assertRegex(page, r"retro \| path \| adaptive-cdf \|.*\| yes \|")
+
+    def test_what_is_interrupted_goes_on(self):
+        args = [*self.SMALL, "--samplers", "cosine"]
+        self.study("whole", *args)
+        every_part = [a for a in args if a not in ("--parts", "path")]  # enough to do for the signal to meet
+        child = self.start("cut", *every_part, "--threads", "1")
+        with child:
+            for line in child.stderr:
+                if line.startswith("retro, path: 2 of"):
+                    break
+            child.send_signal(signal.SIGINT)
+            child.communicate(timeout=60)
+        self.assertEqual(child.returncode, 130)
+        self.assertIn("Combined", self.page("cut"))
+        self.assertIn("measured otherwise", self.study("cut", *args, "--seed", "2", "--resume", code=2))
+        self.study("cut", *args, "--resume")
+        whole, cut = self.rows("whole"), self.rows("cut")
+        self.assertEqual(set(whole), set(cut))
+        for name, figures in whole.items():
+            self.assertEqual(figures[:3], cut[name][:3])  # the rest depends on time
+
+    def test_ways_are_combined(self):
+        self.study("ways", "--quick", "--seeds", "2", "--reference", "32", "--only", "plates", "--parts", "ways",
+                   "--samplers", "exact")
+        text = self.page("ways").split("### Veach's plates")[1]
+        for way in ("plain", "split in 4, stratified", "Owen–Sobol' points", "MIS with lights", "resampled by light, 1 of 8"):
+            self.assertIn(f"| {way} |", text)
+        self.assertIn("| together: MIS, split, stratified, Sobol' |", text)
+
+    def test_what_is_not_there_is_named(self):
+        self.assertIn("no sampler 'magic'", self.study("x", *self.SMALL, "--samplers", "magic", code=2))
+        self.assertIn("no scene 'moon'", self.study("x", "--only", "moon", code=2))
+        self.assertIn("--parts", self.study("x", "--parts", "moon", code=2))
+        self.study("left", "--only", "ball")  # without data
+        self.assertIn("Left out", self.page("left"))
+
     def test_its_scenes_render(self):
-        scenes = pathlib.Path(__file__).parents[2] / "bench" / "study" / "scenes"
         for name in ("metal", "retro", "plates"):
-            self.run_program("render", scenes / f"{name}.xml", "--spp", 1, "-o", f"{name}.exr")
+            self.run_program("render", self.SCENES / f"{name}.xml", "--spp", 1, "-o", f"{name}.exr")
             self.run_program("image-compare", f"{name}.exr", f"{name}.exr")
         # The twin: without its data the fourth is refused.
-        self.assertIn("$", self.run_program("render", scenes / "ball.xml", "--spp", 1, code=2)[1])
+        self.assertIn("$", self.run_program("render", self.SCENES / "ball.xml", "--spp", 1, code=2)[1])
 
 
 class Usage(ProgramTest):
