@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FLIP's pipeline: contrast-sensitive blur in an opponent space and a colour difference in L*a*b*, sharpened
-// where edges or points of one picture are not in the other. Equations and constants are the paper's.
+// where edges or points of one picture are not in the other. Equations are the paper's; constants are also
+// those of its authors' program, with whose maps a test compares.
 #include "reflectree/render/flip.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ Colour from_opponent(Colour c) {
   return rgb_of({y + c[1] / 500, y, y - c[2] / 200});
 }
 
-// L*a*b* with Hunt's effect: dark colours are less colourful (eq. 6).
+// L*a*b* with Hunt's effect: dark colours are less colourful (sect. 4.1.2).
 Colour hunt(Colour rgb) {
   const auto f = [](double t) {
     constexpr double d = 6. / 29;
@@ -58,7 +59,7 @@ Colour hunt(Colour rgb) {
 }
 double hyab(Colour a, Colour b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 
-// Differences to the power .7, the lower 40 % of what is possible spread to 95 % of the range (eq. 9, 10).
+// Differences to the power .7, the lower 40 % of what is possible spread to 95 % of the range (sect. 4.1.3).
 double compressed(double difference) {
   static const double most = std::pow(hyab(hunt({0, 1, 0}), hunt({0, 0, 1})), .7);
   constexpr double knee = .4, share = .95;
@@ -106,7 +107,7 @@ Kernel balanced(Kernel k) {
 }
 
 // The eye's contrast sensitivity as a blur: a sum of Gaussians a sqrt(pi / b) exp(-pi^2 x^2 / b), x in
-// degrees (eq. 4, table 1). In two dimensions each of them is a product of two.
+// degrees (sect. 4.1.1). In two dimensions each of them is a product of two.
 struct Lobe {
   double a, b;
 };
@@ -129,7 +130,7 @@ Plane blurred(const Plane& p, std::initializer_list<Lobe> lobes, double ppd) {
 }
 
 // Lengths of first (edges) and second (points) derivatives of lightness, seen by an eye whose detectors are
-// .082 degrees wide (sect. 4.2).
+// .082 degrees wide (sect. 4.2.1).
 struct Features {
   Plane edges, points;
 };
@@ -199,8 +200,8 @@ Image flip(const Image& reference, const Image& test, const FlipOptions& options
     const double colour = compressed(hyab(seen_a[i], seen_b[i]));
     const double unlike = std::max(std::abs(has_a.edges.values[i] - has_b.edges.values[i]),
                                    std::abs(has_a.points.values[i] - has_b.points.values[i]));
-    const double feature = std::sqrt(std::min(1., unlike / std::sqrt(2.)));  // eq. 15
-    map.values[i] = float(std::pow(colour, 1 - feature));                    // eq. 16
+    const double feature = std::sqrt(std::min(1., unlike / std::sqrt(2.)));  // eq. 9
+    map.values[i] = float(std::pow(colour, 1 - feature));                    // eq. 10
   }
   return map;
 }

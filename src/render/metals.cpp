@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Metals of Mitsuba 3's names. Measured spectra (Palik 1985, Handbook of Optical Constants of Solids, and the
-// SOPRA database; luxpop.com's collection) as red, green and blue: what Mitsuba 3.9.1's RGB variants make of
-// them, which weigh them like emissions, by the CIE 1931 functions without a white point.
+// Metals of Mitsuba 3's names. Measured spectra of the luxpop.com collection (Palik, Handbook of Optical
+// Constants of Solids; atomic scattering factors of the Center for X-Ray Optics, Berkeley, and of Livermore)
+// as red, green and blue: what Mitsuba 3.9.1's RGB variants make of them, which weigh them like emissions, by
+// the CIE 1931 functions without a white point.
 #include "metals.hpp"
 
 #include <algorithm>

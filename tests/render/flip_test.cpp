@@ -13,15 +13,19 @@ namespace reflectree::render {
 namespace {
 
 template <class Colour>
-Image picture(int size, const Colour& colour) {
-  Image image = make_image(size, size, {"R", "G", "B"});
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
+Image picture(int width, int height, const Colour& colour) {
+  Image image = make_image(width, height, {"R", "G", "B"});
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
       const auto c = colour(x, y);
       for (std::size_t k = 0; k < 3; ++k) image.values[image.index(x, y) + k] = c[k];
     }
   }
   return image;
+}
+template <class Colour>
+Image picture(int size, const Colour& colour) {
+  return picture(size, size, colour);
 }
 Image plain(float r, float g, float b) {
   return picture(24, [&](int, int) { return std::array{r, g, b}; });
@@ -71,6 +75,36 @@ TEST(Flip, SeesLessFromFarAndEdgesMore) {
   EXPECT_LT(map.values[map.index(2, 2)], 1e-3f);
   const Image back = flip(dot, mean, {.pixels_per_degree = 30});
   for (std::size_t i = 0; i < map.values.size(); ++i) ASSERT_NEAR(map.values[i], back.values[i], 1e-6f);
+}
+
+// Gradients, checks, a shift and a blot, with what the authors' own program says (flip-evaluator 1.7, of
+// linear RGB).
+TEST(Flip, AgreesWithItsAuthors) {
+  const auto scene = [](bool moved) {
+    const auto colour = [moved](int x, int y) {
+      const double s = x + (moved ? 1 : 0);
+      if (moved && x >= 20 && x < 28 && y >= 10 && y < 16)
+        return std::array{1.f, float(.3 + .25 * std::cos(.015 * s * y)), 0.f};
+      return std::array{float(.5 + .4 * std::sin(.35 * s + .2 * y)), float(.3 + .25 * std::cos(.015 * s * y)),
+                        (int(s) / 6 + y / 6) % 2 != 0 ? .6f : .1f};
+    };
+    return picture(48, 32, colour);
+  };
+  const Image reference = scene(false), test = scene(true);
+  struct Known {
+    double ppd, mean, blot, corner, last;
+  };
+  for (const Known& k :
+       {Known{67.0206, .311477, .950067, .246691, .488081}, Known{30, .365579, .969209, .288601, .624938}}) {
+    const Image map = flip(reference, test, {.pixels_per_degree = k.ppd});
+    const auto at = [&](int x, int y) { return double(map.values[map.index(x, y)]); };
+    EXPECT_NEAR(mean_of(map), k.mean, 2e-5);
+    EXPECT_NEAR(at(24, 12), k.blot, 1e-4);
+    EXPECT_NEAR(at(5, 5), k.corner, 1e-4);
+    EXPECT_NEAR(at(47, 31), k.last, 1e-4);
+    const double other = mean_of(flip(reference, test, {.pixels_per_degree = 1.01 * k.ppd}));
+    EXPECT_GT(std::abs(other - k.mean), 2e-5) << "the twin: an eye one per cent off";
+  }
 }
 
 TEST(Flip, ToneMapsAndRefuses) {

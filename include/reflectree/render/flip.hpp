@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How different two pictures look where they take turns on a screen: FLIP for low dynamic range (Andersson,
 // Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild 2020, "FLIP: A Difference Evaluator for Alternating
-// Images", HPG). Both are tone-mapped as write_png does: times 2^exposure, clipped to [0, 1].
+// Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2)). Both are tone-mapped as write_png does: times
+// 2^exposure, clipped to [0, 1].
 #pragma once
 
 #include "reflectree/io/image.hpp"
@@ -9,7 +10,7 @@
 namespace reflectree::render {
 
 struct FlipOptions {
-  // Of a screen 0.7 m wide with 3840 pixels, seen from 0.7 m: the paper's (eq. 2, sect. 5).
+  // Of a screen 0.7 m wide with 3840 pixels, seen from 0.7 m: the authors' (eq. 1, sect. 4.1.1).
   double pixels_per_degree = 67.0206;
   float exposure = 0;
 };
