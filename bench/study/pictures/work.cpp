@@ -190,6 +190,7 @@ class SceneStudy {
     std::vector<Job> jobs;
     for (const char* sampler : combined_samplers) {
       for (const Way& way : ways()) {
+        if (!is_shown(way, sampler)) continue;
         const Method method = pictures::method_of(way, plan_.directions);
         for (int round = 0; round < plan_.rounds; ++round) {
           const Cell cell{setting_.name, way.name, sampler, round, {}, {}};
