@@ -130,12 +130,11 @@ Page page_of(const Results& results, const Plan& plan) {
   const auto n = [](int x) { return std::to_string(x); };
   Page page;
   page.title = "Pictures";
-  page.lead =
-      n(plan.width) + " × " + n(plan.height) + " pixels, " + n(plan.samples) + " samples a pixel, " +
-      n(plan.rounds) +
-      " seeds, by every sampler at equal samples and at equal time; each method against one picture of "
-      "path tracing by one-shot mode with " +
-      n(plan.reference) + " samples of another seed.";
+  page.lead = n(plan.width) + " × " + n(plan.height) + " pixels, " + n(plan.samples) + " samples a pixel, " +
+              n(plan.rounds) +
+              " seeds, by every sampler at equal samples and at equal time; each method against one picture "
+              "of path tracing by one-shot mode with " +
+              n(plan.reference) + " samples of another seed.";
   page.command("REFLECTREE_DATA=... study_pictures FOLDER --seeds " + n(plan.rounds) + " --seed " +
                std::to_string(plan.seed));
   add_verdict(page, judge(results, methods(), plan.ours));
@@ -144,30 +143,26 @@ Page page_of(const Results& results, const Plan& plan) {
   page.section("How it is measured");
   const int split = std::max(1, int(std::lround(std::sqrt(double(plan.samples)))));
   for (const std::string& text :
-       {std::string("relMSE: the mean over pixels and channels of (a − b)² / (b² + .01), less "
-                    "the converged picture's own noise, which is known from its samples. After ±, the "
-                    "standard error over seeds. All samplers share seeds, so that ratios, taken seed by "
-                    "seed, vary less than what they are made of."),
-        std::string(
-            "Without .1 % of the pixels: a few bright paths can fill an untrimmed mean: one that finds a "
-            "lamp by chance, or the sun by way of the floor. So ratios leave out of each picture "
-            "one pixel in a thousand, those whose errors are largest. It is a favour to samplers "
-            "whose weights vary most. Beside it stand the untrimmed mean and its median over "
-            "seeds, which a path of one seed does not move."),
+       {std::string("relMSE: the mean over pixels and channels of (a − b)² / (b² + .01), less the converged "
+                    "picture's own noise, which is known from its samples. After ±, the standard error over "
+                    "seeds. All samplers share seeds, so that ratios, taken seed by seed, vary less than "
+                    "what they are made of."),
+        std::string("Without .1 % of the pixels: a few bright paths can fill an untrimmed mean: one that "
+                    "finds a lamp by chance, or the sun by way of the floor. So ratios leave out of each "
+                    "picture one pixel in a thousand, those whose errors are largest. It is a favour to "
+                    "samplers whose weights vary most. Beside it stand the untrimmed mean and its median "
+                    "over seeds, which a path of one seed does not move."),
         std::string("Equal time: each sampler gets as many whole samples as fit into the CPU time of ours; "
-                    "what rounding leaves is settled by error × time. (*): timings, CPU time of one "
-                    "thread."),
+                    "what rounding leaves is settled by error × time. (*): timings, CPU time of one thread."),
         "Path tracing: lights and surfaces by the balance heuristic. Recursive ray tracing: " + n(split) +
             " camera samples, each split in " + n(split) +
             " by `sample_n` at the first surface. Photon mapping: a pass and as many light paths as pixels "
-            "for "
-            "each sample, one direction of final gathering; its bias, the blur of lookups, is in its "
+            "for each sample, one direction of final gathering; its bias, the blur of lookups, is in its "
             "errors, the same for all samplers.",
         std::string(
-            "Samplers: `resampling` has no density: lights are left to its directions, and with "
-            "photons so is the adjoint's side; it is shown by path tracing alone. Recursive and photons "
-            "show those that stand for a family each: variants of the same differ as they do by "
-            "path tracing.")})
+            "Samplers: `resampling` has no density: lights are left to its directions, and with photons so "
+            "is the adjoint's side; it is shown by path tracing alone. Recursive and photons show those that "
+            "stand for a family each: variants of the same differ as they do by path tracing.")})
     page.words(text);
   return page;
 }

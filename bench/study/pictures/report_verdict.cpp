@@ -85,8 +85,8 @@ void add_verdict(Page& page, const Verdict& v) {
   page.words(
       "Out of anyone's reach: exact mode draws in proportion to f cos, and no sampler of that factor does "
       "better. Where even its error at equal samples is more than half of the rival's, by two standard "
-      "errors, a sampler that costs "
-      "no more than the rival cannot halve it: the noise that is left comes from the light.");
+      "errors, a sampler that costs no more than the rival cannot halve it: the noise that is left comes "
+      "from the light.");
   page.words(
       "Demand: in geometric mean over scenes no worse than any general sampler, within two standard "
       "errors: " +

@@ -9,21 +9,18 @@ void add_ways(Page& page, const Results& results, const Plan& plan) {
   page.section("Combined with other variance reduction");
   page.words(
       "Direct light, which admits every way; pixels that show a sampled material. Plain: independent points, "
-      "the "
-      "material's own directions, no lights. Each row follows " +
+      "the material's own directions, no lights. Each row follows " +
       std::to_string(plan.directions) +
       " directions a pixel from the material, one or four for a camera sample; MIS adds a sample of a light "
       "for each, resampling draws eight candidates for each. Gains over plain of the same sampler: variance "
-      "at "
-      "equal samples, efficiency, 1 / (variance × CPU time), and variance with the one pixel in a thousand "
-      "that the first two leave out. There the few directions that hit a small light by chance are plain's "
-      "variance, so that the first two say too little of what lights, resampling and MIS are worth, and the "
-      "third is as "
-      "uncertain as its error says.");
+      "at equal samples, efficiency, 1 / (variance × CPU time), and variance without the one pixel in a "
+      "thousand whose error is largest. Where a lamp is small, the few directions that hit it by chance are "
+      "plain's variance: the first two are then as uncertain as their errors say, and the third is of "
+      "pictures in which that lamp is missing.");
   for (const Setting* setting : plan.settings) {
     Table t{{"way"}, {}};
     for (const char* sampler : {"exact", "one-shot", "one-shot-monotone"}) {
-      for (const char* figure : {": variance", ": efficiency (*)", ": variance, untrimmed"})
+      for (const char* figure : {": variance", ": efficiency (*)", ": variance, trimmed"})
         t.head.push_back(std::string(sampler) + figure);
     }
     for (const Way& way : ways()) {
@@ -37,7 +34,7 @@ void add_ways(Page& page, const Results& results, const Plan& plan) {
           continue;
         }
         const Gain gain = gain_of(plain, cells);
-        row.insert(row.end(), {shown(gain.variance), shown(gain.efficiency), shown(gain.untrimmed)});
+        row.insert(row.end(), {shown(gain.variance), shown(gain.efficiency), shown(gain.trimmed)});
         any = true;
       }
       if (any) t.rows.push_back(row);

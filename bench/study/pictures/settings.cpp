@@ -19,7 +19,7 @@ constexpr const char* paint_and_sky[] = {"material", "/rgl/chm_light_blue_rgb.bs
                                          "/envmaps/venice_sunset_1k.hdr"};
 
 constexpr Setting all[] = {
-    {"metal", "metal.xml", "glossy metal (GGX) in a room", false, true, false, {}},
+    {"metal", "metal.xml", "glossy metal (GGX) in a room", false, true, true, {}},
     {"metals", "metal.xml", "the same room, metals of Cook and Torrance (Beckmann)", false, false, false,
      beckmann_metals},
     {"retro", "retro.xml", "retro-reflective spheres under a sun", false, true, true, {}},

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reflectree/peers/registry.hpp"
+#include "reflectree/study/measure.hpp"
 
 namespace reflectree::pictures {
 
@@ -35,8 +35,6 @@ std::vector<std::string> names(const Results& results, std::string_view method, 
 
 // Two standard errors; unknown ones count for nothing.
 double noise_of(const Estimate& e) { return std::isnan(e.error) ? 0 : 2 * e.error; }
-
-bool is_ours(std::string_view name) { return name.starts_with("one-shot") || name == "exact"; }
 
 // The factor of two is out of anyone's reach where even no noise of one's own would not give it.
 Half half_of(const Against& a) {
@@ -99,7 +97,7 @@ Verdict judge(const Results& results, const std::vector<std::string>& methods, c
       const Cells one_shot = results.of(scene, method, ours), exact = results.of(scene, method, "exact");
       if (one_shot.empty()) continue;
       for (const SamplerInfo& info : samplers()) {
-        if (is_ours(info.name) || info.name == ours) continue;
+        if (study::is_ours(info) || info.name == ours) continue;
         const Cells rival = results.of(scene, method, info.name);
         if (rival.empty()) continue;
         Against a{scene, method, std::string(info.name), info.general, {}, {}, {}, {}, Half::missed};

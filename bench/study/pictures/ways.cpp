@@ -48,10 +48,14 @@ Method method_of(const Way& way, int directions) {
   return m;
 }
 
+bool is_shown(const Way& way, std::string_view sampler) {
+  return sampler != "one-shot-monotone" || way.points == Points::sobol || &way == &all[0];
+}
+
 Gain gain_of(const Cells& plain, const Cells& way) {
-  return {ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.trimmed; }),
-          ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.trimmed * c.equal.seconds; }),
-          ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.all; })};
+  return {ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.all; }),
+          ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.all * c.equal.seconds; }),
+          ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.trimmed; })};
 }
 
 }  // namespace reflectree::pictures

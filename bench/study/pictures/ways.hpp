@@ -21,13 +21,16 @@ struct Way {
 // The first is plain: independent points, the material's own directions, no lights.
 std::span<const Way> ways();
 
+// Monotone one-shot mode differs where points are more than random alone.
+bool is_shown(const Way& way, std::string_view sampler);
+
 // `directions` a pixel are followed.
 Method method_of(const Way& way, int directions);
 
-// Gains over plain of one sampler: variance, and variance times CPU time, without the one pixel in a thousand
-// whose error is largest; and variance with all of them.
+// Gains over plain of one sampler: variance, variance times CPU time, and variance without the one pixel in a
+// thousand whose error is largest.
 struct Gain {
-  Estimate variance, efficiency, untrimmed;
+  Estimate variance, efficiency, trimmed;
 };
 Gain gain_of(const Cells& plain, const Cells& way);
 

@@ -79,8 +79,9 @@ class SceneStudy {
     std::string why;  // there is none
   };
   struct Job {
-    const Scene* scene;
+    const Scene* scene;  // as it was loaded
     Method method;
+    bool divided;  // N directions are
     int timed_samples;
     Cell cell;
     const Reference* reference;
@@ -150,15 +151,13 @@ class SceneStudy {
   void measure_all(const std::string& name, const Reference& reference) {
     const Method method = method_of(name, plan_);
     std::vector<const Subject*> wanted;
-    std::vector<Scene> scenes;
     for (const Subject& s : subjects_) {
-      if (!s.scene || !is_wanted(plan_, name, s.name)) continue;
-      wanted.push_back(&s), scenes.push_back(prepared(*s.scene, method));
+      if (s.scene && is_wanted(plan_, name, s.name)) wanted.push_back(&s);
     }
     std::vector<double> seconds(wanted.size());
     double ours = 0;
     for_each_job(place_.threads, wanted.size(), [&](std::size_t i) {
-      seconds[i] = seconds_per_sample(scenes[i], method, place_.host);
+      seconds[i] = seconds_per_sample(prepared(*wanted[i]->scene, method), method, place_.host);
       if (wanted[i]->name == plan_.ours) ours = seconds[i];
     });
     const int rounds = name == "path" ? plan_.rounds : plan_.other_rounds;
@@ -171,7 +170,7 @@ class SceneStudy {
                         : std::max(1, int(std::lround(method.samples * ours / seconds[i])));
         if (!others.empty()) timed = others.front()->timed.samples;
         const Cell cell{setting_.name, name, wanted[i]->name, round, {}, {}};
-        if (!is_there(cell)) jobs.push_back({&scenes[i], method, timed, cell, &reference});
+        if (!is_there(cell)) jobs.push_back({&*wanted[i]->scene, method, true, timed, cell, &reference});
       }
     }
     do_all(name, jobs);
@@ -188,17 +187,15 @@ class SceneStudy {
     std::vector<char> mask;
     for (std::size_t i = 0; i < seen.sums.size(); i += 6) mask.push_back(seen.sums[i] > .5 * seen.samples);
     const Reference reference = reference_of(converged("direct", scene, direct), std::move(mask));
-    std::vector<Scene> scenes;
-    scenes.reserve(std::size(combined_samplers) * ways().size());
     std::vector<Job> jobs;
     for (const char* sampler : combined_samplers) {
       for (const Way& way : ways()) {
+        if (!is_shown(way, sampler)) continue;
         const Method method = pictures::method_of(way, plan_.directions);
-        const Scene whole = prepared(scene_of(sampler), method);
-        scenes.push_back(way.divided ? whole : undivided(whole));
         for (int round = 0; round < plan_.rounds; ++round) {
           const Cell cell{setting_.name, way.name, sampler, round, {}, {}};
-          if (!is_there(cell)) jobs.push_back({&scenes.back(), method, method.samples, cell, &reference});
+          if (!is_there(cell))
+            jobs.push_back({&scene_of(sampler), method, way.divided, method.samples, cell, &reference});
         }
       }
     }
@@ -212,9 +209,11 @@ class SceneStudy {
     for_each_job(place_.threads, jobs.size(), [&](std::size_t i) {
       Job& job = jobs[i];
       const bool pictured = name == "path" && job.cell.round == 0;
+      Scene scene = prepared(*job.scene, job.method);
+      if (!job.divided) scene = undivided(std::move(scene));
       Image image;
-      measure(job.cell, *job.scene, job.method, job.timed_samples, seed_of(plan_, job.cell.round),
-              *job.reference, place_.host, pictured ? &image : nullptr);
+      measure(job.cell, scene, job.method, job.timed_samples, seed_of(plan_, job.cell.round), *job.reference,
+              place_.host, pictured ? &image : nullptr);
       const auto shown = shown_samplers();
       if (pictured && std::find(shown.begin(), shown.end(), job.cell.sampler) != shown.end())
         save(image, job.cell.sampler, &job.reference->image);
