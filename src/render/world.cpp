@@ -19,8 +19,8 @@ float heuristic(Technique technique, float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
-    : on(interaction_at(scene, hit, origin, direction)),
+PathVertex::PathVertex(const Scene& scene, const Interaction& met, Direction direction)
+    : on(met),
       frame(frame_from_normal(on.shading)),
       wo(to_local(frame, -direction)),
       surface(&scene.surfaces[on.surface]) {}
@@ -63,22 +63,30 @@ World::World(const Scene& s) : scene(s), embree(s), lights(s) {
 
 float World::near(Point at) const { return 5e-5f * std::max(largest(at), .01f * extent); }
 
-bool World::sees(Point at, Direction direction, float distance) const {
+Ray World::shadow_ray(Point at, Direction direction, float distance) const {
   const float start = near(at);
-  const float end = std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start;
-  return !embree.occluded(at, direction, start, end);
+  return {at, direction, start, std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start};
 }
 
-Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
+bool World::sees(Point at, Direction direction, float distance) const {
+  return !embree.occluded(shadow_ray(at, direction, distance));
+}
+
+Lit World::unshadowed(const PathVertex& at, Technique technique, PathBits& u) const {
   const auto light = lights.sample(at.on.at, u);
   if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
   const Direction wi = to_local(at.frame, light->direction);
   const auto [f_cos, pdf] = at.value(wi);
   const Rgb arriving = f_cos * light->radiance;
-  if (arriving == Rgb{} || !sees(at.on.at, light->direction, light->distance)) return {};
+  if (arriving == Rgb{}) return {};
   const bool alone = light->delta || technique == Technique::light;
   const float share = alone ? 1 : heuristic(technique, light->pdf, pdf);
-  return (share / light->pdf) * arriving;
+  return {(share / light->pdf) * arriving, shadow_ray(at.on.at, light->direction, light->distance)};
+}
+
+Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
+  const Lit lit = unshadowed(at, technique, u);
+  return lit.radiance == Rgb{} || embree.occluded(lit.towards) ? Rgb{} : lit.radiance;
 }
 
 }  // namespace reflectree::render

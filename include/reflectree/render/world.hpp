@@ -20,7 +20,9 @@ float heuristic(Technique technique, float own, float other);
 
 // A place where a path meets a surface; `wo` goes back along it, in the shading frame.
 struct PathVertex {
-  PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction);
+  PathVertex(const Scene& scene, const Interaction& on, Direction direction);
+  PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
+      : PathVertex(scene, interaction_at(scene, hit, origin, direction), direction) {}
   Interaction on;
   Frame<float> frame;
   Direction wo;
@@ -36,14 +38,23 @@ struct PathVertex {
   Rgb emitted() const { return wo.z > 0 ? surface->radiance : Rgb{}; }
 };
 
+// Light that reaches a vertex, reflected back, if nothing stands in the ray's way.
+struct Lit {
+  Rgb radiance;
+  Ray towards;
+};
+
 struct World {
   explicit World(const Scene& scene);  // holds a reference
 
   // How far from a surface rays start: well above the rounding of its coordinates.
   float near(Point at) const;
+  // Stops short of what it leads to.
+  Ray shadow_ray(Point at, Direction direction, float distance) const;
   bool sees(Point at, Direction direction, float distance) const;
   // Next-event estimation: a point on a light, weighed against the directions that the surface would draw.
   // Where those have no density, they are left to find what they can: all but points and directions.
+  Lit unshadowed(const PathVertex& at, Technique technique, PathBits& u) const;
   Rgb direct(const PathVertex& at, Technique technique, PathBits& u) const;
 
   const Scene& scene;
