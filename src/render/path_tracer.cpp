@@ -21,7 +21,7 @@ struct Path {
   float drawn_pdf = 0;  // of the ray's direction; 0: nothing competes with it
 };
 
-// What lights at a vertex bring if nothing stands between.
+// What a light at a vertex brings if nothing stands between.
 struct Expected {
   Rgb* result;
   Rgb radiance;
@@ -34,9 +34,16 @@ struct PathTracer::Wave {
   std::vector<Path> paths, met;
   std::vector<Ray> rays;
   std::vector<std::optional<Hit>> hits;
-  std::vector<Interaction> on;
+  std::vector<Direction> escaped, wi;
+  std::vector<Environment::Light> sky;
   std::vector<std::uint32_t> order, starts;
   std::vector<PathVertex> vertices;
+  std::vector<Scattering::View> views;
+  std::vector<Point> points;
+  std::vector<PathBits*> bits;
+  std::vector<std::optional<LightSample>> lights;
+  std::vector<Scattering::Value> values;
+  std::vector<std::optional<Scattered>> next;
   std::vector<Expected> expected;
   std::vector<std::uint8_t> dark;
 
@@ -45,7 +52,7 @@ struct PathTracer::Wave {
     for (std::size_t begin = 0, end; begin < vertices.size(); begin = end) {
       const Scattering& scattering = vertices[begin].scattering();
       for (end = begin + 1; end < vertices.size() && &vertices[end].scattering() == &scattering;) ++end;
-      visit(scattering, begin, end);
+      visit(scattering, begin, end - begin);
     }
   }
 };
@@ -78,7 +85,7 @@ void PathTracer::meet(Wave& wave, int depth) const {
   const std::size_t n = wave.paths.size();
   wave.rays.clear();
   for (const Path& p : wave.paths) wave.rays.push_back(p.ray);
-  wave.hits.resize(n), wave.on.resize(n);
+  wave.hits.resize(n);
   world_.embree.intersect(wave.rays, depth == 1, wave.hits);
   wave.starts.assign(groups_ + 1, 0);
   const auto add = [&](const Path& p, Rgb radiance, float other) {
@@ -87,26 +94,32 @@ void PathTracer::meet(Wave& wave, int depth) const {
       share = technique_ == Technique::light ? 0 : heuristic(technique_, p.drawn_pdf, other);
     *p.result = *p.result + share * (p.throughput * radiance);
   };
+  wave.escaped.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    const Path& p = wave.paths[i];
-    if (!wave.hits[i]) {
-      if (!scene.environment) continue;
-      const auto [radiance, other] = world_.lights.environment(p.ray.direction);
-      add(p, radiance, other);
-      continue;
+    if (wave.hits[i]) {
+      ++wave.starts[group_[surface_of(scene, *wave.hits[i])] + 1];
+    } else if (scene.environment) {
+      wave.escaped.push_back(wave.paths[i].ray.direction);
     }
-    wave.on[i] = interaction_at(scene, *wave.hits[i], p.ray.origin, p.ray.direction);
-    ++wave.starts[group_[wave.on[i].surface] + 1];
+  }
+  if (scene.environment) {
+    wave.sky.resize(wave.escaped.size());
+    world_.lights.environment(wave.escaped, wave.sky);
+    auto sky = wave.sky.begin();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!wave.hits[i]) add(wave.paths[i], sky->radiance, sky->pdf), ++sky;
+    }
   }
   for (std::size_t g = 0; g < groups_; ++g) wave.starts[g + 1] += wave.starts[g];
   wave.order.resize(wave.starts[groups_]);
   for (std::size_t i = 0; i < n; ++i) {
-    if (wave.hits[i]) wave.order[wave.starts[group_[wave.on[i].surface]]++] = std::uint32_t(i);
+    if (wave.hits[i]) wave.order[wave.starts[group_[surface_of(scene, *wave.hits[i])]]++] = std::uint32_t(i);
   }
-  wave.met.clear(), wave.vertices.clear();
+  wave.met.clear(), wave.vertices.clear(), wave.views.clear(), wave.points.clear(), wave.bits.clear();
   for (const std::uint32_t i : wave.order) {
     const Path& p = wave.met.emplace_back(wave.paths[i]);
-    const PathVertex& at = wave.vertices.emplace_back(scene, wave.on[i], p.ray.direction);
+    const PathVertex& at = wave.vertices.emplace_back(scene, *wave.hits[i], p.ray.origin, p.ray.direction);
+    wave.views.push_back({at.wo, at.on.uv}), wave.points.push_back(at.on.at), wave.bits.push_back(p.bits);
     if (const Rgb emitted = at.emitted(); emitted != Rgb{}) {
       const bool competes = p.drawn_pdf > 0;
       add(p, emitted,
@@ -117,14 +130,27 @@ void PathTracer::meet(Wave& wave, int depth) const {
 
 // Next-event estimation at every vertex.
 void PathTracer::light(Wave& wave, int depth) const {
+  const std::size_t n = wave.met.size();
+  for (PathBits* bits : wave.bits) bits->begin(depth, Decision::light);
+  wave.lights.resize(n), wave.wi.resize(n), wave.values.resize(n);
+  world_.lights.sample(wave.points, wave.bits, wave.lights);
+  for (std::size_t i = 0; i < n; ++i)
+    wave.wi[i] = wave.lights[i] ? to_local(wave.vertices[i].frame, wave.lights[i]->direction) : Direction{};
+  {
+    const InPhase evaluating(Phase::eval);
+    wave.each_material([&](const Scattering& scattering, std::size_t begin, std::size_t count) {
+      scattering.values(std::span(wave.views).subspan(begin, count), std::span(wave.wi).subspan(begin, count),
+                        std::span(wave.values).subspan(begin, count));
+    });
+  }
   wave.rays.clear(), wave.expected.clear();
-  for (std::size_t i = 0; i < wave.met.size(); ++i) {
-    const Path& p = wave.met[i];
-    p.bits->begin(depth, Decision::light);
-    const Lit lit = world_.unshadowed(wave.vertices[i], technique_, *p.bits);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& light = wave.lights[i];
+    if (!light || !competes(*light, wave.vertices[i].scattering())) continue;
+    const Lit lit = world_.unshadowed(wave.points[i], *light, wave.values[i], technique_);
     if (lit.radiance == Rgb{}) continue;
     wave.rays.push_back(lit.towards);
-    wave.expected.push_back({p.result, p.throughput * lit.radiance});
+    wave.expected.push_back({wave.met[i].result, wave.met[i].throughput * lit.radiance});
   }
   wave.dark.resize(wave.rays.size());
   world_.embree.occluded(wave.rays, wave.dark);
@@ -135,12 +161,21 @@ void PathTracer::light(Wave& wave, int depth) const {
 
 // Draws where paths go on; those that do are the wave's.
 void PathTracer::scatter(Wave& wave, int depth) const {
+  for (PathBits* bits : wave.bits) bits->begin(depth, Decision::surface);
+  wave.next.resize(wave.met.size());
+  {
+    const InPhase sampling(Phase::sample);
+    wave.each_material([&](const Scattering& scattering, std::size_t begin, std::size_t count) {
+      scattering.samples(std::span(wave.views).subspan(begin, count),
+                         std::span(wave.bits).subspan(begin, count),
+                         std::span(wave.next).subspan(begin, count));
+    });
+  }
   wave.paths.clear();
   for (std::size_t i = 0; i < wave.met.size(); ++i) {
     Path& p = wave.met[i];
     const PathVertex& at = wave.vertices[i];
-    p.bits->begin(depth, Decision::surface);
-    const auto next = at.sample(*p.bits);
+    const auto& next = wave.next[i];
     if (!next) continue;
     p.throughput = p.throughput * next->weight;
     const float brightest = largest(p.throughput);

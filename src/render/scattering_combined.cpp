@@ -153,6 +153,16 @@ struct Blend final : Scattering {
 
 }  // namespace
 
+void Scattering::values(std::span<const View> views, std::span<const Direction> wi,
+                        std::span<Value> out) const {
+  for (std::size_t i = 0; i < views.size(); ++i) out[i] = value(views[i].wo, wi[i], views[i].uv);
+}
+
+void Scattering::samples(std::span<const View> views, std::span<PathBits* const> u,
+                         std::span<std::optional<Scattered>> out) const {
+  for (std::size_t i = 0; i < views.size(); ++i) out[i] = sample(views[i].wo, views[i].uv, *u[i]);
+}
+
 std::size_t Scattering::sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const {
   std::size_t filled = 0;
   for (const PathBits& own : u) {

@@ -9,6 +9,10 @@
 
 namespace reflectree::render {
 
+bool competes(const LightSample& light, const Scattering& scattering) {
+  return light.pdf > 0 && (light.delta || scattering.has_pdf());
+}
+
 namespace {
 float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 }  // namespace
@@ -19,8 +23,8 @@ float heuristic(Technique technique, float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-PathVertex::PathVertex(const Scene& scene, const Interaction& met, Direction direction)
-    : on(met),
+PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
+    : on(interaction_at(scene, hit, origin, direction)),
       frame(frame_from_normal(on.shading)),
       wo(to_local(frame, -direction)),
       surface(&scene.surfaces[on.surface]) {}
@@ -72,20 +76,19 @@ bool World::sees(Point at, Direction direction, float distance) const {
   return !embree.occluded(shadow_ray(at, direction, distance));
 }
 
-Lit World::unshadowed(const PathVertex& at, Technique technique, PathBits& u) const {
-  const auto light = lights.sample(at.on.at, u);
-  if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
-  const Direction wi = to_local(at.frame, light->direction);
-  const auto [f_cos, pdf] = at.value(wi);
-  const Rgb arriving = f_cos * light->radiance;
+Lit World::unshadowed(Point at, const LightSample& light, const Scattering::Value& value,
+                      Technique technique) const {
+  const Rgb arriving = value.f_cos * light.radiance;
   if (arriving == Rgb{}) return {};
-  const bool alone = light->delta || technique == Technique::light;
-  const float share = alone ? 1 : heuristic(technique, light->pdf, pdf);
-  return {(share / light->pdf) * arriving, shadow_ray(at.on.at, light->direction, light->distance)};
+  const bool alone = light.delta || technique == Technique::light;
+  const float share = alone ? 1 : heuristic(technique, light.pdf, value.pdf);
+  return {(share / light.pdf) * arriving, shadow_ray(at, light.direction, light.distance)};
 }
 
 Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
-  const Lit lit = unshadowed(at, technique, u);
+  const auto light = lights.sample(at.on.at, u);
+  if (!light || !competes(*light, at.scattering())) return {};
+  const Lit lit = unshadowed(at.on.at, *light, at.value(to_local(at.frame, light->direction)), technique);
   return lit.radiance == Rgb{} || embree.occluded(lit.towards) ? Rgb{} : lit.radiance;
 }
 

@@ -47,6 +47,11 @@ struct Interaction {
   std::uint32_t surface;
   Direction normal() const { return normalize(face); }
 };
+inline std::uint32_t surface_of(const Scene& scene, const Hit& hit) {
+  return hit.kind == Hit::Kind::triangle ? scene.triangles[hit.index].surface
+         : hit.kind == Hit::Kind::sphere ? scene.spheres[hit.index].surface
+                                         : scene.disks[hit.index].surface;
+}
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
 
 }  // namespace reflectree::render

@@ -44,6 +44,15 @@ class Scattering {
     return f == Rgb{} ? Value{} : Value{f, pdf(wo, wi, uv)};
   }
   virtual std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const = 0;
+  // Many at once, each its own: of a surface's point, from where it is seen.
+  struct View {
+    Direction wo;
+    Uv uv;
+  };
+  virtual void values(std::span<const View> views, std::span<const Direction> wi,
+                      std::span<Value> out) const;
+  virtual void samples(std::span<const View> views, std::span<PathBits* const> u,
+                       std::span<std::optional<Scattered>> out) const;
   // One direction for each of `u`, whose bits stand at its decision; returns how many were filled, with their
   // bits moved to the front. A mean over the directions is a sum over those filled divided by u.size().
   virtual std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const;

@@ -15,14 +15,16 @@ enum class Technique {
   resampled  // the surface's directions, resampled by the light that they see: direct lighting alone
 };
 
+// Whether next-event estimation may count a sample: where a surface's directions have no density, they are left
+// to find what they can, all but points and directions.
+bool competes(const LightSample& light, const Scattering& scattering);
+
 // Of a technique with density `own` > 0 against the one with `other`.
 float heuristic(Technique technique, float own, float other);
 
 // A place where a path meets a surface; `wo` goes back along it, in the shading frame.
 struct PathVertex {
-  PathVertex(const Scene& scene, const Interaction& on, Direction direction);
-  PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
-      : PathVertex(scene, interaction_at(scene, hit, origin, direction), direction) {}
+  PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction);
   Interaction on;
   Frame<float> frame;
   Direction wo;
@@ -53,8 +55,8 @@ struct World {
   Ray shadow_ray(Point at, Direction direction, float distance) const;
   bool sees(Point at, Direction direction, float distance) const;
   // Next-event estimation: a point on a light, weighed against the directions that the surface would draw.
-  // Where those have no density, they are left to find what they can: all but points and directions.
-  Lit unshadowed(const PathVertex& at, Technique technique, PathBits& u) const;
+  Lit unshadowed(Point at, const LightSample& light, const Scattering::Value& value,
+                 Technique technique) const;
   Rgb direct(const PathVertex& at, Technique technique, PathBits& u) const;
 
   const Scene& scene;
