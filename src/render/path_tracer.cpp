@@ -16,7 +16,6 @@ float largest(Rgb c) { return std::max({c.r, c.g, c.b}); }
 struct Path {
   PathBits* bits;
   Rgb* result;
-  Ray ray;
   Rgb throughput{1, 1, 1};
   float drawn_pdf = 0;  // of the ray's direction; 0: nothing competes with it
 };
@@ -29,10 +28,11 @@ struct Expected {
 
 }  // namespace
 
-// Paths that have met a surface stand in the order of materials, each with its vertex.
+// Paths under way, each with its ray; and those that have met a surface, in the order of materials, each with
+// its vertex and what is asked there. All are kept for the next bounce.
 struct PathTracer::Wave {
   std::vector<Path> paths, met;
-  std::vector<Ray> rays;
+  std::vector<Ray> rays, shadow_rays;
   std::vector<std::optional<Hit>> hits;
   std::vector<Direction> escaped, wi;
   std::vector<Environment::Light> sky;
@@ -67,8 +67,10 @@ PathTracer::PathTracer(const Scene& scene, Technique technique) : world_(scene),
 void PathTracer::radiance(std::span<Sight> sights, std::span<Rgb> out) const {
   Wave wave;
   std::fill_n(out.begin(), sights.size(), Rgb{});
-  for (std::size_t i = 0; i < sights.size(); ++i)
-    wave.paths.push_back({&sights[i].bits, &out[i], {sights[i].origin, sights[i].direction}});
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    wave.paths.push_back({&sights[i].bits, &out[i]});
+    wave.rays.push_back({sights[i].origin, sights[i].direction});
+  }
   // `depth` counts edges: 1 is what the camera sees directly.
   const int last = world_.scene.max_depth;
   for (int depth = 1; !wave.paths.empty() && (last < 0 || depth <= last); ++depth) {
@@ -83,8 +85,6 @@ void PathTracer::radiance(std::span<Sight> sights, std::span<Rgb> out) const {
 void PathTracer::meet(Wave& wave, int depth) const {
   const Scene& scene = world_.scene;
   const std::size_t n = wave.paths.size();
-  wave.rays.clear();
-  for (const Path& p : wave.paths) wave.rays.push_back(p.ray);
   wave.hits.resize(n);
   world_.embree.intersect(wave.rays, depth == 1, wave.hits);
   wave.starts.assign(groups_ + 1, 0);
@@ -99,7 +99,7 @@ void PathTracer::meet(Wave& wave, int depth) const {
     if (wave.hits[i]) {
       ++wave.starts[group_[surface_of(scene, *wave.hits[i])] + 1];
     } else if (scene.environment) {
-      wave.escaped.push_back(wave.paths[i].ray.direction);
+      wave.escaped.push_back(wave.rays[i].direction);
     }
   }
   if (scene.environment) {
@@ -118,12 +118,12 @@ void PathTracer::meet(Wave& wave, int depth) const {
   wave.met.clear(), wave.vertices.clear(), wave.views.clear(), wave.points.clear(), wave.bits.clear();
   for (const std::uint32_t i : wave.order) {
     const Path& p = wave.met.emplace_back(wave.paths[i]);
-    const PathVertex& at = wave.vertices.emplace_back(scene, *wave.hits[i], p.ray.origin, p.ray.direction);
+    const Ray& ray = wave.rays[i];
+    const PathVertex& at = wave.vertices.emplace_back(scene, *wave.hits[i], ray.origin, ray.direction);
     wave.views.push_back({at.wo, at.on.uv}), wave.points.push_back(at.on.at), wave.bits.push_back(p.bits);
     if (const Rgb emitted = at.emitted(); emitted != Rgb{}) {
       const bool competes = p.drawn_pdf > 0;
-      add(p, emitted,
-          competes ? world_.lights.pdf(p.ray.origin, p.ray.direction, *wave.hits[i], at.on) : 0);
+      add(p, emitted, competes ? world_.lights.pdf(ray.origin, ray.direction, *wave.hits[i], at.on) : 0);
     }
   }
 }
@@ -143,17 +143,17 @@ void PathTracer::light(Wave& wave, int depth) const {
                         std::span(wave.values).subspan(begin, count));
     });
   }
-  wave.rays.clear(), wave.expected.clear();
+  wave.shadow_rays.clear(), wave.expected.clear();
   for (std::size_t i = 0; i < n; ++i) {
     const auto& light = wave.lights[i];
     if (!light || !competes(*light, wave.vertices[i].scattering())) continue;
     const Lit lit = world_.unshadowed(wave.points[i], *light, wave.values[i], technique_);
     if (lit.radiance == Rgb{}) continue;
-    wave.rays.push_back(lit.towards);
+    wave.shadow_rays.push_back(lit.towards);
     wave.expected.push_back({wave.met[i].result, wave.met[i].throughput * lit.radiance});
   }
-  wave.dark.resize(wave.rays.size());
-  world_.embree.occluded(wave.rays, wave.dark);
+  wave.dark.resize(wave.shadow_rays.size());
+  world_.embree.occluded(wave.shadow_rays, wave.dark);
   for (std::size_t i = 0; i < wave.expected.size(); ++i) {
     if (!wave.dark[i]) *wave.expected[i].result = *wave.expected[i].result + wave.expected[i].radiance;
   }
@@ -171,25 +171,24 @@ void PathTracer::scatter(Wave& wave, int depth) const {
                          std::span(wave.next).subspan(begin, count));
     });
   }
-  wave.paths.clear();
+  wave.paths.clear(), wave.rays.clear();
   for (std::size_t i = 0; i < wave.met.size(); ++i) {
-    Path& p = wave.met[i];
+    const Path& p = wave.met[i];
     const PathVertex& at = wave.vertices[i];
     const auto& next = wave.next[i];
     if (!next) continue;
-    p.throughput = p.throughput * next->weight;
-    const float brightest = largest(p.throughput);
+    Rgb throughput = p.throughput * next->weight;
+    const float brightest = largest(throughput);
     if (!(brightest > 0)) continue;
     if (depth >= world_.scene.rr_depth) {  // Russian roulette by the largest channel
       p.bits->begin(depth, Decision::survival);
       const float survive = std::min(.95f, brightest);
       if (!(to_unit_float((*p.bits)()) < survive)) continue;
-      p.throughput = (1 / survive) * p.throughput;
+      throughput = (1 / survive) * throughput;
     }
     const bool competes = at.scattering().has_pdf() && technique_ != Technique::surface;
-    p.drawn_pdf = competes && !next->delta ? next->pdf : 0;
-    p.ray = {at.on.at, to_world(at.frame, next->wi), world_.near(at.on.at)};
-    wave.paths.push_back(p);
+    wave.paths.push_back({p.bits, p.result, throughput, competes && !next->delta ? next->pdf : 0});
+    wave.rays.push_back({at.on.at, to_world(at.frame, next->wi), world_.near(at.on.at)});
   }
 }
 

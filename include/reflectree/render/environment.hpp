@@ -66,7 +66,9 @@ class Environment {
     Aim aim(PathBits& u) const;
     Drawn drawn(const Aim& aim, std::size_t x) const;
     std::size_t column(const Aim& aim) const;
-    const Rgb* texel(std::size_t x, std::size_t y) const { return texels.data() + y * (std::size_t(width) + 1) + x; }
+    const Rgb* texel(std::size_t x, std::size_t y) const {
+      return texels.data() + y * (std::size_t(width) + 1) + x;
+    }
     Light in_cell(const Place& p) const;
   };
 

@@ -15,8 +15,8 @@ enum class Technique {
   resampled  // the surface's directions, resampled by the light that they see: direct lighting alone
 };
 
-// Whether next-event estimation may count a sample: where a surface's directions have no density, they are left
-// to find what they can, all but points and directions.
+// Whether next-event estimation may count a sample: where a surface's directions have no density, they are
+// left to find what they can, all but points and directions.
 bool competes(const LightSample& light, const Scattering& scattering);
 
 // Of a technique with density `own` > 0 against the one with `other`.
