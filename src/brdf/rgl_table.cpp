@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "reflectree/brdf/fast_trigonometry.hpp"
+#include "reflectree/math/prefetch.hpp"
 
 namespace reflectree {
 namespace {
@@ -111,7 +112,11 @@ RglTable::Known RglTable::known(const ShadingGeometry<float>& g) const {
   return {pair, t1, 4.f * interpolate(sigma_, elevation_to_u(theta_o))};
 }
 
-Rgb RglTable::operator()(const ShadingGeometry<float>& g) const { return value(known(g), g); }
+Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
+  const Known of_wo = known(g);
+  const InWarp at = in_warp(of_wo, g);
+  return value(of_wo, at.u, in_colour(of_wo, at), g.cos_theta_i);
+}
 
 void RglTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
                     std::span<float> out) const {
@@ -121,57 +126,82 @@ void RglTable::eval(std::span<const Direction> wo, std::span<const Direction> wi
 }
 
 void RglTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const {
-  Known of_wo{};
-  for (std::size_t i = 0; i < geometry.size(); ++i) {
-    const ShadingGeometry<float>& g = geometry[i];
-    Rgb v;
-    if (g.cos_theta_o > 0 && g.cos_theta_i > 0) {
-      const bool same = i > 0 && geometry[i - 1].cos_theta_o == g.cos_theta_o &&
-                        geometry[i - 1].wo.x == g.wo.x && geometry[i - 1].wo.y == g.wo.y;
-      if (!same) of_wo = known(g);
-      v = value(of_wo, g);
+  constexpr std::size_t block = 64;
+  struct Pair {
+    std::size_t i;
+    Known of_wo;
+    InWarp warp;
+    InColour colour;
+  } pairs[block];
+  const auto both_ends = [](const auto* node, std::size_t nodes) {
+    prefetch(node), prefetch(reinterpret_cast<const char*>(node + nodes) - 1);
+  };
+  const auto warp_stride = std::size_t(warp_width_), colour_stride = std::size_t(colour_width_);
+  for (std::size_t begin = 0; begin < geometry.size(); begin += block) {
+    const std::size_t end = std::min(begin + block, geometry.size());
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const ShadingGeometry<float>& g = geometry[i];
+      if (!(g.cos_theta_o > 0 && g.cos_theta_i > 0)) {
+        out[3 * i] = out[3 * i + 1] = out[3 * i + 2] = 0;
+        continue;
+      }
+      Pair& p = pairs[count];
+      const bool same = count > 0 && geometry[pairs[count - 1].i].wo == g.wo;
+      p.i = i, p.of_wo = same ? pairs[count - 1].of_wo : known(g), p.warp = in_warp(p.of_wo, g);
+      both_ends(p.warp.node, 2), both_ends(p.warp.node + warp_stride, 2), both_ends(p.warp.rows, 2);
+      ++count;
     }
-    out[3 * i] = v.r, out[3 * i + 1] = v.g, out[3 * i + 2] = v.b;
+    for (Pair& p : std::span(pairs, count)) {
+      p.colour = in_colour(p.of_wo, p.warp);
+      both_ends(p.colour.node, 2), both_ends(p.colour.node + colour_stride, 2);
+    }
+    for (const Pair& p : std::span(pairs, count)) {
+      const Rgb v = value(p.of_wo, p.warp.u, p.colour, geometry[p.i].cos_theta_i);
+      out[3 * p.i] = v.r, out[3 * p.i + 1] = v.g, out[3 * p.i + 2] = v.b;
+    }
   }
 }
 
-Rgb RglTable::value(const Known& of_wo, const ShadingGeometry<float>& g) const {
-  const std::size_t pair = of_wo.pair;
-  const float t1 = of_wo.t1, t0 = 1 - t1;
-
+RglTable::InWarp RglTable::in_warp(const Known& of_wo, const ShadingGeometry<float>& g) const {
   // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
   const bool normal = g.wo.x == 0 && g.wo.y == 0;
   const float ox = select(normal, 1.f, g.wo.x), oy = g.wo.y;
   const float phi = detail::angle(ox * g.wh.y - oy * g.wh.x, ox * g.wh.x + oy * g.wh.y);
   const float u = elevation_to_u(detail::polar_angle(sin2_theta(g.wh), g.cos_theta_h));
   const GridPosition px = locate(u, warp_width_), py = locate(phi * (0.5f / pi) + 0.5f, warp_height_);
+  const std::size_t row = of_wo.pair * std::size_t(warp_height_) + std::size_t(py.node);
+  return {warp_.data() + row * std::size_t(warp_width_) + std::size_t(px.node), rows_.data() + row,
+          px.fraction, py.fraction, u};
+}
 
-  // V^-1: the cumulative masses of the bilinear density up to the half vector, along u, then along v.
-  const float x1 = px.fraction, y1 = py.fraction, y0 = 1 - y1;
-  const auto stride = std::size_t(warp_width_);
-  const std::size_t row = pair * std::size_t(warp_height_) + std::size_t(py.node);
-  const WarpNode* lower = warp_.data() + row * stride + std::size_t(px.node);
-  const WarpNode* upper = lower + stride;
+// V^-1: the cumulative masses of the bilinear density up to the half vector, along u, then along v.
+RglTable::InColour RglTable::in_colour(const Known& of_wo, const InWarp& at) const {
+  const float t1 = of_wo.t1, t0 = 1 - t1, x1 = at.x, y1 = at.y, y0 = 1 - y1;
+  const WarpNode *lower = at.node, *upper = lower + warp_width_;
   const auto along = [&](const WarpNode* n) {
     const float cdf = t0 * n[0].cdf[0] + t1 * n[0].cdf[1];
     const float p0 = t0 * n[0].pdf[0] + t1 * n[0].pdf[1], p1 = t0 * n[1].pdf[0] + t1 * n[1].pdf[1];
     return cdf + x1 * (p0 + 0.5f * x1 * (p1 - p0));
   };
-  const WarpRow* rows = rows_.data() + row;
+  const WarpRow* rows = at.rows;
   const float m0 = t0 * rows[0].mass[0] + t1 * rows[0].mass[1];
   const float m1 = t0 * rows[1].mass[0] + t1 * rows[1].mass[1];
   const float mass = y0 * m0 + y1 * m1;
   const float sx = (y0 * along(lower) + y1 * along(upper)) / select(mass > 0.f, mass, 1.f);
   const float sy = t0 * rows[0].cdf[0] + t1 * rows[0].cdf[1] + y1 * (m0 + 0.5f * y1 * (m1 - m0));
 
-  // S, bilinear on the warped square.
   const GridPosition qx = locate(sx, colour_width_), qy = locate(sy, colour_height_);
+  const std::size_t row = of_wo.pair * std::size_t(colour_height_) + std::size_t(qy.node);
+  return {colour_.data() + row * std::size_t(colour_width_) + std::size_t(qx.node), qx.fraction, qy.fraction};
+}
+
+// S, bilinear on the warped square.
+Rgb RglTable::value(const Known& of_wo, float u, const InColour& at, float cos_theta_i) const {
   const auto colour_stride = std::size_t(colour_width_);
-  const ColourNode* n00 = colour_.data() +
-                          (pair * std::size_t(colour_height_) + std::size_t(qy.node)) * colour_stride +
-                          std::size_t(qx.node);
-  const float a1 = qx.fraction, a0 = 1 - a1, b1 = qy.fraction, b0 = 1 - b1;
-  const float scale = interpolate(ndf_, u) / (of_wo.four_sigma * max(1e-6f, g.cos_theta_i));
+  const ColourNode* n00 = at.node;
+  const float t1 = of_wo.t1, t0 = 1 - t1, a1 = at.x, a0 = 1 - a1, b1 = at.y, b0 = 1 - b1;
+  const float scale = interpolate(ndf_, u) / (of_wo.four_sigma * max(1e-6f, cos_theta_i));
   float out[4] = {0, 0, 0, 0};
   const auto add = [&out](const ColourNode& n, float w0, float w1) {
     for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];

@@ -3,6 +3,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,12 +16,21 @@ namespace reflectree::render {
 
 namespace {
 
-RTCRay ray_from(Point o, Direction d, float near, float far) {
+constexpr std::size_t stream_length = 256;  // of the rays that Embree gets at once
+
+RTCRay ray_from(const Ray& r) {
   RTCRay ray{};
-  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z, ray.tnear = near;
-  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z, ray.tfar = far;
+  ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z, ray.tnear = r.near;
+  ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z, ray.tfar = r.far;
   ray.mask = 0xffffffffU;
   return ray;
+}
+
+RTCIntersectContext context_of(bool coherent) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
 }
 
 template <class T>
@@ -50,21 +61,34 @@ const Flat& flat(const Scene& scene, Hit::Kind kind, unsigned index) {
   return kind == Hit::Kind::rectangle ? scene.rectangles[index] : scene.disks[index];
 }
 
+// Of a packet's ray i.
 template <Hit::Kind kind>
-bool distance_to(const Scene& scene, unsigned index, const RTCRay& r, float& distance) {
-  const Point o{r.org_x, r.org_y, r.org_z};
-  const Direction d{r.dir_x, r.dir_y, r.dir_z};
+bool distance_to(const Scene& scene, unsigned index, RTCRayN* r, unsigned n, unsigned i, float& distance) {
+  const Point o{RTCRayN_org_x(r, n, i), RTCRayN_org_y(r, n, i), RTCRayN_org_z(r, n, i)};
+  const Direction d{RTCRayN_dir_x(r, n, i), RTCRayN_dir_y(r, n, i), RTCRayN_dir_z(r, n, i)};
+  const float near = RTCRayN_tnear(r, n, i), far = RTCRayN_tfar(r, n, i);
   if constexpr (kind == Hit::Kind::sphere) {
-    return sphere_distance(scene.spheres[index], o, d, r.tnear, r.tfar, distance);
+    return sphere_distance(scene.spheres[index], o, d, near, far, distance);
   } else {
     const auto [t, x, y] = crossing(flat(scene, kind, index), o, d);
     const bool within = kind == Hit::Kind::rectangle ? in_rectangle(x, y) : in_disk(x, y);
-    if (!(within && t > double(r.tnear) && t < double(r.tfar))) return false;
+    if (!(within && t > double(near) && t < double(far))) return false;
     return distance = float(t), true;
   }
 }
 
-// Embree's callbacks; single rays alone are ever traced.
+// A place on a flat shape in double precision, as it was met.
+std::optional<Hit> hit_of(const Scene& scene, const Ray& ray, const RTCRayHit& r) {
+  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  Hit hit{Hit::Kind(r.hit.geomID), r.hit.primID, r.ray.tfar, double(r.hit.u), double(r.hit.v)};
+  if (hit.kind == Hit::Kind::rectangle || hit.kind == Hit::Kind::disk) {
+    const auto [distance, x, y] = crossing(flat(scene, hit.kind, hit.index), ray.origin, ray.direction);
+    hit.distance = float(distance), hit.u = x, hit.v = y;
+  }
+  return hit;
+}
+
+// Embree's callbacks, for single rays and packets.
 template <Hit::Kind kind>
 void bounds(const RTCBoundsFunctionArguments* a) {
   const auto& scene = *static_cast<const Scene*>(a->geometryUserPtr);
@@ -90,22 +114,24 @@ void bounds(const RTCBoundsFunctionArguments* a) {
 
 template <Hit::Kind kind>
 void meet(const RTCIntersectFunctionNArguments* a) {
-  if (!a->valid[0]) return;
-  auto& query = *reinterpret_cast<RTCRayHit*>(a->rayhit);
-  float distance = 0;
-  if (!distance_to<kind>(*static_cast<const Scene*>(a->geometryUserPtr), a->primID, query.ray, distance))
-    return;
-  query.ray.tfar = distance;
-  query.hit.geomID = a->geomID, query.hit.primID = a->primID;
+  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+  RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
+  const auto& scene = *static_cast<const Scene*>(a->geometryUserPtr);
+  for (unsigned i = 0; i < a->N; ++i) {
+    float distance = 0;
+    if (!a->valid[i] || !distance_to<kind>(scene, a->primID, rays, a->N, i, distance)) continue;
+    RTCRayN_tfar(rays, a->N, i) = distance;
+    RTCHitN_geomID(hits, a->N, i) = a->geomID, RTCHitN_primID(hits, a->N, i) = a->primID;
+  }
 }
 
 template <Hit::Kind kind>
 void block(const RTCOccludedFunctionNArguments* a) {
-  if (!a->valid[0]) return;
-  auto& ray = *reinterpret_cast<RTCRay*>(a->ray);
-  float distance = 0;
-  if (distance_to<kind>(*static_cast<const Scene*>(a->geometryUserPtr), a->primID, ray, distance)) {
-    ray.tfar = -std::numeric_limits<float>::infinity();
+  const auto& scene = *static_cast<const Scene*>(a->geometryUserPtr);
+  for (unsigned i = 0; i < a->N; ++i) {
+    float distance = 0;
+    if (!a->valid[i] || !distance_to<kind>(scene, a->primID, a->ray, a->N, i, distance)) continue;
+    RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
   }
 }
 
@@ -162,31 +188,51 @@ EmbreeScene::EmbreeScene(const Scene& scene) : shapes_(scene) {
   rtcCommitScene(world);
 }
 
-std::optional<Hit> EmbreeScene::intersect(Point origin, Direction direction, float near) const {
+std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   const InPhase traversing(Phase::traversal);
-  RTCRayHit query;
-  query.ray = ray_from(origin, direction, near, std::numeric_limits<float>::infinity());
+  RTCRayHit query{ray_from(ray), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RTCIntersectContext context = context_of(false);
   rtcIntersect1(static_cast<RTCScene>(scene_.get()), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const auto kind = Hit::Kind(query.hit.geomID);
-  Hit hit{kind, query.hit.primID, query.ray.tfar, double(query.hit.u), double(query.hit.v)};
-  if (kind == Hit::Kind::rectangle || kind == Hit::Kind::disk) {
-    const auto [distance, x, y] = crossing(flat(shapes_, kind, hit.index), origin, direction);
-    hit.distance = float(distance), hit.u = x, hit.v = y;
-  }
-  return hit;
+  return hit_of(shapes_, ray, query);
 }
 
-bool EmbreeScene::occluded(Point origin, Direction direction, float near, float far) const {
+bool EmbreeScene::occluded(const Ray& ray) const {
   const InPhase traversing(Phase::traversal);
-  RTCRay ray = ray_from(origin, direction, near, far);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(static_cast<RTCScene>(scene_.get()), &context, &ray);
-  return ray.tfar < 0;
+  RTCRay query = ray_from(ray);
+  RTCIntersectContext context = context_of(false);
+  rtcOccluded1(static_cast<RTCScene>(scene_.get()), &context, &query);
+  return query.tfar < 0;
+}
+
+void EmbreeScene::intersect(std::span<const Ray> rays, bool coherent,
+                            std::span<std::optional<Hit>> out) const {
+  const InPhase traversing(Phase::traversal);
+  RTCIntersectContext context = context_of(coherent);
+  std::array<RTCRayHit, stream_length> queries;
+  for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
+    const std::size_t n = std::min(stream_length, rays.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      queries[i].ray = ray_from(rays[begin + i]);
+      queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
+                   sizeof queries[0]);
+    for (std::size_t i = 0; i < n; ++i) out[begin + i] = hit_of(shapes_, rays[begin + i], queries[i]);
+  }
+}
+
+void EmbreeScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> out) const {
+  const InPhase traversing(Phase::traversal);
+  RTCIntersectContext context = context_of(false);
+  std::array<RTCRay, stream_length> queries;
+  for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
+    const std::size_t n = std::min(stream_length, rays.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) queries[i] = ray_from(rays[begin + i]);
+    rtcOccluded1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
+                  sizeof queries[0]);
+    for (std::size_t i = 0; i < n; ++i) out[begin + i] = queries[i].tfar < 0;
+  }
 }
 
 }  // namespace reflectree::render

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reflectree/error.hpp"
+#include "reflectree/math/prefetch.hpp"
 
 namespace reflectree::render {
 
@@ -23,15 +24,17 @@ void append_guide(const T* sums, std::size_t n, std::vector<std::uint16_t>& guid
   }
 }
 
-// The first element above u of the last.
+// The first element above `share` of the last; the search begins at the guide's.
 template <class T>
-std::size_t guided(const T* sums, std::size_t n, const std::uint16_t* guide, T u) {
-  const T goal = u * sums[n - 1];
-  std::size_t at = guide[std::size_t(u * T(n))];
+std::size_t guided(const T* sums, std::size_t n, std::size_t begin, T share) {
+  const T goal = share * sums[n - 1];
+  std::size_t at = begin;
   while (at > 0 && sums[at - 1] > goal) --at;  // where rounding went too far
   while (at + 1 < n && sums[at] <= goal) ++at;
   return at;
 }
+
+constexpr std::size_t block = 64;  // of look-ups whose waits for memory overlap
 
 }  // namespace
 
@@ -71,43 +74,97 @@ Environment::Environment(const Image& p, Frame<float> frame, float scale, const 
 
 // A cell's share of the mass, times the number of cells, is the density on the square, whose Jacobian is
 // 2 pi^2 sin theta.
-Environment::Light Environment::Sky::in_cell(int x, int y, float s, float t, float sine) const {
-  const auto stride = std::size_t(width) + 1;
-  const Rgb* c = texels.data() + std::size_t(y) * stride + std::size_t(x);
-  const Rgb sum = c[0] + c[1] + c[stride] + c[stride + 1];
-  const float own = std::max(0.f, sum.r + sum.g + sum.b) * sines[std::size_t(y)];
+Environment::Light Environment::Sky::in_cell(const Place& p) const {
+  const Rgb *c = texel(std::size_t(p.x), std::size_t(p.y)), *d = c + width + 1;
+  const Rgb sum = c[0] + c[1] + d[0] + d[1];
+  const float own = std::max(0.f, sum.r + sum.g + sum.b) * sines[std::size_t(p.y)];
   const float density = own / float(mass.back()) * float(width) * float(rows);
-  return {(1 - t) * ((1 - s) * c[0] + s * c[1]) + t * ((1 - s) * c[stride] + s * c[stride + 1]),
-          density / (2 * pi * pi * std::max(1e-6f, sine))};
+  return {(1 - p.t) * ((1 - p.s) * c[0] + p.s * c[1]) + p.t * ((1 - p.s) * d[0] + p.s * d[1]),
+          density / (2 * pi * pi * std::max(1e-6f, p.sine))};
 }
 
-Environment::Light Environment::at(Direction direction) const {
-  if (!sky_) return {constant_, 1 / (4 * pi)};
-  const Direction d = to_local(sky_->frame, direction);
-  const float w = float(sky_->width), h = float(sky_->rows);
+Environment::Sky::Place Environment::Sky::place_of(Direction direction) const {
+  const Direction d = to_local(frame, direction);
+  const float w = float(width), h = float(rows);
   float x = std::atan2(d.x, -d.z) / (2 * pi) * w - .5f;
   if (x < 0) x += w;
   const float y = std::acos(std::clamp(d.y, -1.f, 1.f)) / pi * h;
-  const int i = std::clamp(int(x), 0, sky_->width - 1), j = std::clamp(int(y), 0, sky_->rows - 1);
-  return sky_->in_cell(i, j, x - float(i), y - float(j), std::sqrt(d.x * d.x + d.z * d.z));
+  const int i = std::clamp(int(x), 0, width - 1), j = std::clamp(int(y), 0, rows - 1);
+  return {i, j, x - float(i), y - float(j), std::sqrt(d.x * d.x + d.z * d.z)};
+}
+
+Environment::Light Environment::at(Direction direction) const {
+  return sky_ ? sky_->in_cell(sky_->place_of(direction)) : Light{constant_, 1 / (4 * pi)};
+}
+
+void Environment::at(std::span<const Direction> directions, std::span<Light> out) const {
+  Sky::Place places[block];
+  for (std::size_t begin = 0; begin < directions.size(); begin += block) {
+    const std::size_t n = std::min(block, directions.size() - begin);
+    for (std::size_t i = 0; sky_ && i < n; ++i) {
+      const auto& p = places[i] = sky_->place_of(directions[begin + i]);
+      prefetch(sky_->texel(std::size_t(p.x), std::size_t(p.y)));
+      prefetch(sky_->texel(std::size_t(p.x), std::size_t(p.y) + 1));
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      out[begin + i] = sky_ ? sky_->in_cell(places[i]) : Light{constant_, 1 / (4 * pi)};
+  }
+}
+
+Environment::Sky::Aim Environment::Sky::aim(PathBits& u) const {
+  const double of_rows = to_unit_double(u());
+  const auto n = std::size_t(rows), w = std::size_t(width);
+  const std::size_t y = guided(mass.data(), n, first_row[std::size_t(of_rows * double(n))], of_rows);
+  const float share = std::min(largest_share, to_unit_float(u())), s = to_unit_float(u());
+  return {y, y * w + std::size_t(share * float(w)), share, s, to_unit_float(u())};
+}
+
+std::size_t Environment::Sky::column(const Aim& aim) const {
+  const auto w = std::size_t(width);
+  return guided(columns.data() + aim.y * w, w, first_column[aim.guide], aim.share);
+}
+
+Environment::Drawn Environment::Sky::drawn(const Aim& aim, std::size_t x) const {
+  const float phi = 2 * pi * (float(x) + .5f + aim.s) / float(width);
+  const float theta = pi * (float(aim.y) + aim.t) / float(rows), sine = std::sin(theta);
+  return {to_world(frame, Direction{std::sin(phi) * sine, std::cos(theta), -std::cos(phi) * sine}),
+          in_cell({int(x), int(aim.y), aim.s, aim.t, sine})};
 }
 
 Environment::Drawn Environment::sample(PathBits& u) const {
-  if (!sky_) {
-    const float z = 1 - 2 * to_unit_float(u()), phi = 2 * pi * to_unit_float(u());
-    const float r = std::sqrt(std::max(0.f, 1 - z * z));
-    return {{r * std::cos(phi), r * std::sin(phi), z}, {constant_, 1 / (4 * pi)}};
+  if (sky_) {
+    const auto aim = sky_->aim(u);
+    return sky_->drawn(aim, sky_->column(aim));
   }
-  const Sky& sky = *sky_;
-  const auto width = std::size_t(sky.width), rows = std::size_t(sky.rows);
-  const std::size_t y = guided(sky.mass.data(), rows, sky.first_row.data(), to_unit_double(u()));
-  const std::size_t x = guided(sky.columns.data() + y * width, width, sky.first_column.data() + y * width,
-                               std::min(largest_share, to_unit_float(u())));
-  const float s = to_unit_float(u()), t = to_unit_float(u());
-  const float phi = 2 * pi * (float(x) + .5f + s) / float(width), theta = pi * (float(y) + t) / float(rows);
-  const float sine = std::sin(theta);
-  return {to_world(sky.frame, Direction{std::sin(phi) * sine, std::cos(theta), -std::cos(phi) * sine}),
-          sky.in_cell(int(x), int(y), s, t, sine)};
+  const float z = 1 - 2 * to_unit_float(u()), phi = 2 * pi * to_unit_float(u());
+  const float r = std::sqrt(std::max(0.f, 1 - z * z));
+  return {{r * std::cos(phi), r * std::sin(phi), z}, {constant_, 1 / (4 * pi)}};
+}
+
+void Environment::sample(std::span<PathBits* const> u, std::span<Drawn> out) const {
+  if (!sky_) {
+    for (std::size_t i = 0; i < u.size(); ++i) out[i] = sample(*u[i]);
+    return;
+  }
+  Sky::Aim aims[block];
+  std::size_t x[block];
+  const auto width = std::size_t(sky_->width);
+  for (std::size_t begin = 0; begin < u.size(); begin += block) {
+    const std::size_t n = std::min(block, u.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      aims[i] = sky_->aim(*u[begin + i]);
+      prefetch(&sky_->first_column[aims[i].guide]);
+      prefetch(&sky_->columns[aims[i].y * width + width - 1]);
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      prefetch(&sky_->columns[aims[i].y * width + sky_->first_column[aims[i].guide]]);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = sky_->column(aims[i]);
+      prefetch(sky_->texel(x[i], aims[i].y));
+      prefetch(sky_->texel(x[i], aims[i].y + 1));
+    }
+    for (std::size_t i = 0; i < n; ++i) out[begin + i] = sky_->drawn(aims[i], x[i]);
+  }
 }
 
 }  // namespace reflectree::render

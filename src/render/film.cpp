@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/render/film.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -57,17 +58,41 @@ Direction through(const Scene& scene, float x, float y) {
   return normalize(c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up);
 }
 
-void add_samples(const Integrator& integrator, const Scene& scene, int x, int y, int first, int last,
-                 const Film& film, double* sums) {
-  const auto pixel = std::uint64_t(y) * std::uint64_t(scene.width) + std::uint64_t(x);
-  for (int s = first; s < last; ++s) {
-    PathBits u(film.points, film.seed, pixel, std::uint32_t(s));
-    const Vec2<float> off = offset(scene.filter, u);
-    const Direction along = through(scene, float(x) + .5f + off.x, float(y) + .5f + off.y);
-    const Rgb v = integrator.radiance(scene.camera.origin, along, u);
-    for (int k = 0; k < 3; ++k) {
-      const auto value = double(channel(v, k));
-      sums[k] += value, sums[k + 3] += value * value;
+// Pixels that are rendered together, a sample of each at a time: what meets in packets of rays depends on
+// nothing else.
+constexpr int tile_size = 32;
+struct Tile {
+  int x0, y0, x1, y1;
+};
+std::size_t tiles_across(int n) { return std::size_t((n + tile_size - 1) / tile_size); }
+Tile tile_of(const Scene& scene, std::size_t i) {
+  const std::size_t across = tiles_across(scene.width);
+  const int x = int(i % across) * tile_size, y = int(i / across) * tile_size;
+  return {x, y, std::min(x + tile_size, scene.width), std::min(y + tile_size, scene.height)};
+}
+
+void add_sample(const Integrator& integrator, const Scene& scene, const Tile& tile, int sample, Film& film) {
+  std::vector<Sight> sights;
+  sights.reserve(std::size_t(tile_size) * tile_size);
+  const auto pixel = [&](int x, int y) { return std::size_t(y) * std::size_t(scene.width) + std::size_t(x); };
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      PathBits u(film.points, film.seed, pixel(x, y), std::uint32_t(sample));
+      const Vec2<float> off = offset(scene.filter, u);
+      const Direction along = through(scene, float(x) + .5f + off.x, float(y) + .5f + off.y);
+      sights.push_back({scene.camera.origin, along, u});
+    }
+  }
+  std::vector<Rgb> found(sights.size());
+  integrator.radiance(sights, found);
+  std::size_t n = 0;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x, ++n) {
+      double* sums = film.sums.data() + 6 * pixel(x, y);
+      for (int k = 0; k < 3; ++k) {
+        const auto value = double(channel(found[n], k));
+        sums[k] += value, sums[k + 3] += value * value;
+      }
     }
   }
 }
@@ -95,22 +120,23 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
   while (film.samples < goal && !(timed && film.samples > first && elapsed() >= options.seconds)) {
     const int pass = std::min(timed ? 1 : integrator->longest_pass(), goal - film.samples);
     Film next = film;
-    std::atomic<int> rows = 0;
+    const std::size_t tiles = tiles_across(scene.width) * tiles_across(scene.height);
+    std::atomic<int> ready = 0;
     std::atomic<bool> stopped = false;
-    const auto rows_of = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end && !stopped; ++y) {
-        if (host.cancelled()) stopped = true;
-        for (int x = 0; x < scene.width && !stopped; ++x) {
-          double* sums = next.sums.data() + 6 * (y * std::size_t(scene.width) + std::size_t(x));
-          add_samples(*integrator, scene, x, int(y), film.samples, film.samples + pass, film, sums);
+    const auto render_tiles = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end && !stopped; ++i) {
+        const Tile tile = tile_of(scene, i);
+        for (int s = film.samples; s < film.samples + pass && !stopped; ++s) {
+          if (host.cancelled()) stopped = true;
+          if (!stopped) add_sample(*integrator, scene, tile, s, next);
         }
-        const float done = float(film.samples - first) + float(pass) * float(++rows) / float(scene.height);
+        const float done = float(film.samples - first) + float(pass) * float(++ready) / float(tiles);
         host.progress(timed ? float(elapsed() / options.seconds) : done / float(goal - first));
       }
     };
     try {
       integrator->prepare(film.samples, film.seed, host);
-      host.parallel_for(std::size_t(scene.height), rows_of);
+      host.parallel_for(tiles, render_tiles);
     } catch (const Cancelled&) {
       stopped = true;
     }

@@ -2,6 +2,7 @@
 #include "reflectree/render/lights.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -84,11 +85,45 @@ std::optional<LightSample> Lights::sample_area(Point at, Point on, Direction nor
   return LightSample{direction, distance, distance * distance / (cosine * float(area)), false, radiance};
 }
 
+const Lights::Light& Lights::chosen(PathBits& u) const {
+  return lights_[std::size_t((std::uint64_t(u()) * lights_.size()) >> 32U)];
+}
+
 std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
   if (lights_.empty()) return std::nullopt;
   const InPhase sampling(Phase::sample);
-  const auto n = std::uint32_t(lights_.size());
-  const Light& light = lights_[std::size_t((std::uint64_t(u()) * n) >> 32U)];
+  return sample_light(chosen(u), at, u);
+}
+
+void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
+                    std::span<std::optional<LightSample>> out) const {
+  const InPhase sampling(Phase::sample);
+  std::fill_n(out.begin(), at.size(), std::nullopt);
+  std::array<PathBits*, 64> bits;
+  std::array<std::uint32_t, bits.size()> places;
+  std::array<Environment::Drawn, bits.size()> drawn;
+  std::size_t waiting = 0;  // for the environment
+  const auto from_environment = [&] {
+    if (waiting == 0) return;
+    scene_.environment->sample(std::span(bits).first(waiting), drawn);
+    for (std::size_t k = 0; k < waiting; ++k)
+      out[places[k]] = LightSample{drawn[k].direction, far_away, drawn[k].light.pdf / float(lights_.size()),
+                                   false, drawn[k].light.radiance};
+    waiting = 0;
+  };
+  for (std::size_t i = 0; i < at.size() && !lights_.empty(); ++i) {
+    const Light& light = chosen(*u[i]);
+    if (light.kind == Light::Kind::environment) {
+      bits[waiting] = u[i], places[waiting] = std::uint32_t(i);
+      if (++waiting == bits.size()) from_environment();
+    } else {
+      out[i] = sample_light(light, at[i], *u[i]);
+    }
+  }
+  from_environment();
+}
+
+std::optional<LightSample> Lights::sample_light(const Light& light, Point at, PathBits& u) const {
   std::optional<LightSample> s;
   switch (light.kind) {
     case Light::Kind::mesh: {
@@ -137,7 +172,7 @@ std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
       break;
     }
   }
-  if (s) s->pdf /= float(n);
+  if (s) s->pdf /= float(lights_.size());
   return s;
 }
 
@@ -159,6 +194,11 @@ float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interacti
 Environment::Light Lights::environment(Direction direction) const {
   const auto light = scene_.environment->at(direction);
   return {light.radiance, light.pdf / float(lights_.size())};
+}
+
+void Lights::environment(std::span<const Direction> directions, std::span<Environment::Light> out) const {
+  scene_.environment->at(directions, out);
+  for (Environment::Light& light : out.first(directions.size())) light.pdf /= float(lights_.size());
 }
 
 }  // namespace reflectree::render

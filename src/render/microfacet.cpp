@@ -4,58 +4,11 @@
 #include <cmath>
 
 #include "fresnel.hpp"
+#include "visible_slope.hpp"
 
 namespace reflectree::render {
 
 namespace {
-
-constexpr float inverse_root_pi = .564189584f;
-
-// Single precision (Giles 2010, "Approximating the erfinv function", GPU Computing Gems 2, table 5).
-float inverse_erf(float x) {
-  x = clamp(x, -.99999994f, .99999994f);
-  const float w = -std::log((1 - x) * (1 + x));
-  if (w < 5) {
-    const float v = w - 2.5f;
-    float p = 2.81022636e-08f;
-    for (const float c : {3.43273939e-07f, -3.5233877e-06f, -4.39150654e-06f, .00021858087f, -.00125372503f,
-                          -.00417768164f, .246640727f, 1.50140941f}) {
-      p = c + p * v;
-    }
-    return p * x;
-  }
-  const float v = std::sqrt(w) - 3;
-  float p = -.000200214257f;
-  for (const float c : {.000100950558f, .00134934322f, -.00367342844f, .00573950773f, -.0076224613f,
-                        .00943887047f, 1.00167406f, 2.83297682f}) {
-    p = c + p * v;
-  }
-  return p * x;
-}
-
-// A visible slope x along wo, in units of alpha: its density goes as max(0, cos - x sin) exp(-x^2). In
-// b = erf x the integral up to x, (1 + b) / 2 cos + exp(-x^2) sin / (2 sqrt pi), is concave and has the
-// simple derivative (cos - x sin) / 2; it grows up to x = cot theta. Newton's steps from Jakob's fit (2014,
-// "An Improved Visible Normal Sampling Routine for the Beckmann Distribution"), kept inside a bracket.
-float visible_slope(float cosine, float sine, float u) {
-  if (!(sine > 1e-4f * cosine)) return inverse_erf(2 * u - 1);
-  const auto integral = [&](float b, float x) {
-    return .5f * (1 + b) * cosine + .5f * inverse_root_pi * std::exp(-x * x) * sine;
-  };
-  const float end = cosine / sine, top = std::erf(end), goal = u * integral(top, end);
-  const float theta = std::acos(clamp(cosine, 0.f, 1.f));
-  const float power = 1 + theta * (-.876f + theta * (.4265f - .0594f * theta));
-  float low = -1, high = top, b = top - (1 + top) * std::pow(1 - u, power), x = inverse_erf(b);
-  for (int i = 0; i < 12; ++i) {
-    const float error = integral(b, x) - goal;
-    if (std::abs(error) < 1e-6f) break;
-    (error > 0 ? high : low) = b;
-    const float next = b - 2 * error / (cosine - x * sine);
-    b = next > low && next < high ? next : (low + high) / 2;
-    x = inverse_erf(b);
-  }
-  return x;
-}
 
 Direction visible_ggx(Direction v, float u1, float u2) {
   const float across = v.x * v.x + v.y * v.y;
@@ -90,12 +43,12 @@ float Microfacets::g1(Direction w) const {
   }
   if (!(tangent > 1e-7f)) return 1;
   const float a = 1 / (roughness_.alpha * tangent);
-  return a > 5 ? 1 : 2 / (1 + std::erf(a) + inverse_root_pi * std::exp(-a * a) / a);
+  // 2 / (1 + erf a + exp(-a^2) / (a sqrt pi))
+  return a > 5 ? 1 : 2 / (2 + std::exp(-a * a) * (inverse_root_pi / a - scaled_erfc(a)));
 }
 
-float Microfacets::pdf(Direction wo, Direction wh) const {
-  if (!roughness_.sample_visible) return d(wh) * wh.z;
-  return d(wh) * g1(wo) * max(0.f, dot(wo, wh)) / wo.z;
+float Microfacets::pdf(Direction wo, Direction wh, float d, float g1_o) const {
+  return roughness_.sample_visible ? d * g1_o * max(0.f, dot(wo, wh)) / wo.z : d * wh.z;
 }
 
 Direction Microfacets::sample(Direction wo, float u1, float u2) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Isotropic microfacet distributions with Smith's shadowing, uncorrelated (Walter et al. 2007), and their
 // visible normals: GGX by Heitz 2018 (JCGT 7(4)); Beckmann by inverting the distribution of visible slopes,
-// Heitz & d'Eon 2014 (eq. 10), along wo, while the slope across is Gaussian.
+// Heitz & d'Eon 2014 (eq. 10), along wo (visible_slope.hpp), while the slope across is Gaussian.
 #pragma once
 
 #include "reflectree/render/path_bits.hpp"
@@ -15,8 +15,8 @@ class Microfacets {
 
   float d(Direction wh) const;
   float g1(Direction w) const;
-  // Density of `sample`, per solid angle of wh.
-  float pdf(Direction wo, Direction wh) const;
+  // Density of `sample`, per solid angle of wh, from d(wh) and g1(wo).
+  float pdf(Direction wo, Direction wh, float d, float g1_o) const;
   Direction sample(Direction wo, float u1, float u2) const;
   Direction sample(Direction wo, PathBits& u) const {
     const float u1 = to_unit_float(u());

@@ -25,7 +25,7 @@ float radius_for(const World& world) {
   for (int i = 0; i < 256; ++i) {
     const float x = (float(i % 16) + .5f) / 8 - 1, y = (float(i / 16) + .5f) / 8 - 1;
     const Direction along = normalize(c.forward + (x * c.tan_x) * c.left + (y * c.tan_y) * c.up);
-    if (const auto hit = world.embree.intersect(c.origin, along, 0)) distances.push_back(hit->distance);
+    if (const auto hit = world.embree.intersect({c.origin, along})) distances.push_back(hit->distance);
   }
   if (distances.empty()) return 1;
   std::nth_element(distances.begin(), distances.begin() + std::ptrdiff_t(distances.size() / 2),
@@ -84,7 +84,7 @@ Rgb PhotonMapper::follow(Point origin, Direction direction, int depth, std::uint
                          PathBits& u) const {
   Rgb result, throughput{1, 1, 1};
   for (; edges_left(depth) >= 0; ++depth) {
-    const auto hit = world_.embree.intersect(origin, direction, depth == 1 ? 0 : world_.near(origin));
+    const auto hit = world_.embree.intersect({origin, direction, depth == 1 ? 0 : world_.near(origin)});
     if (!hit) {
       if (world_.scene.environment)
         result = result + throughput * world_.scene.environment->radiance(direction);
@@ -142,7 +142,7 @@ Rgb PhotonMapper::beyond(const PathVertex& at, const Scattered& next, int depth,
     return to_unit_float(u()) < survive ? (1 / survive) * follow(at.on.at, direction, depth, 1, u) : Rgb{};
   }
   const auto share = [&](float other) { return competes ? heuristic(technique_, next.pdf, other) : 1.f; };
-  const auto hit = world_.embree.intersect(at.on.at, direction, world_.near(at.on.at));
+  const auto hit = world_.embree.intersect({at.on.at, direction, world_.near(at.on.at)});
   if (!hit) {
     if (!world_.scene.environment) return {};
     const auto [radiance, other] = world_.lights.environment(direction);
@@ -173,7 +173,7 @@ Rgb PhotonMapper::gathered(PathVertex at, int depth, PathBits& u) const {
     throughput = (1 / survive) * throughput;
     const Point origin = at.on.at;
     const Direction direction = normalize(to_world(at.frame, next->wi));
-    const auto hit = world_.embree.intersect(origin, direction, world_.near(origin));
+    const auto hit = world_.embree.intersect({origin, direction, world_.near(origin)});
     if (!hit) return result;
     at = PathVertex(world_.scene, *hit, origin, direction);
   }

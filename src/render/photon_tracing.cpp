@@ -26,7 +26,7 @@ void trace(const World& world, const Emission& emission, float share, PathBits& 
   bool deltas = true;
   for (int edges = 1; edges <= most; ++edges) {
     const auto hit =
-        world.embree.intersect(origin, direction, edges > 1 || start->inside ? world.near(origin) : 0);
+        world.embree.intersect({origin, direction, edges > 1 || start->inside ? world.near(origin) : 0});
     if (!hit) return;
     const PathVertex at(world.scene, *hit, origin, direction);
     const float cosine = std::abs(dot(at.on.normal(), direction));

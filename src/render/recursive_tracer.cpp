@@ -29,7 +29,7 @@ Rgb RecursiveTracer::arriving(const Ray& ray, PathBits& u) const {
     return technique_ == Technique::light ? 0.f : heuristic(technique_, ray.drawn_pdf, other);
   };
   const float near = ray.depth == 1 ? 0 : world_.near(ray.origin);
-  const auto hit = world_.embree.intersect(ray.origin, ray.direction, near);
+  const auto hit = world_.embree.intersect({ray.origin, ray.direction, near});
   if (!hit) {
     if (!world_.scene.environment) return {};
     const auto [radiance, other] = world_.lights.environment(ray.direction);

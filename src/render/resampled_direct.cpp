@@ -47,7 +47,7 @@ ResampledDirect::ResampledDirect(const Scene& scene, int candidates)
 }
 
 ResampledDirect::Arriving ResampledDirect::unshadowed(Point at, Direction direction) const {
-  if (const auto hit = lamps_embree_->intersect(at, direction, world_.near(at)))
+  if (const auto hit = lamps_embree_->intersect({at, direction, world_.near(at)}))
     return {PathVertex(lamps_, *hit, at, direction).emitted(), hit->distance};
   const auto& sky = world_.scene.environment;
   return {sky ? sky->radiance(direction) : Rgb{}, std::numeric_limits<float>::infinity()};
@@ -55,7 +55,7 @@ ResampledDirect::Arriving ResampledDirect::unshadowed(Point at, Direction direct
 
 Rgb ResampledDirect::radiance(Point origin, Direction direction, PathBits& u) const {
   if (world_.scene.max_depth == 0) return {};
-  const auto hit = world_.embree.intersect(origin, direction, 0);
+  const auto hit = world_.embree.intersect({origin, direction});
   if (!hit) {
     const auto& sky = world_.scene.environment;
     return sky ? sky->radiance(direction) : Rgb{};

@@ -2,6 +2,7 @@
 // Any function with any sampler; and materials made of others.
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "cosine_lobe.hpp"
 #include "reflectree/render/scattering.hpp"
@@ -29,6 +30,61 @@ struct Sampled final : Scattering {
     u.take_back(bits);
     if (!drawn) return std::nullopt;
     return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
+  }
+  // f at up to `block` pairs, all above the surface, at once.
+  static constexpr std::size_t block = 64;
+  struct Together {
+    const AnyBrdf& f;
+    std::array<ShadingGeometry<float>, block> geometry;
+    std::array<std::uint32_t, block> place;
+    std::size_t count = 0;
+    std::vector<float> channels = std::vector<float>(block * std::size_t(f.channels()));
+
+    void add(std::size_t i, const ShadingGeometry<float>& g) {
+      geometry[count] = g, place[count++] = std::uint32_t(i);
+    }
+    template <class Visit>
+    void evaluate(const Visit& visit) {
+      const auto n = std::size_t(f.channels());
+      f.eval(std::span(geometry).first(count), std::span(channels).first(count * n));
+      for (std::size_t k = 0; k < count; ++k) {
+        const float* v = channels.data() + k * n;
+        visit(place[k], n < 3 ? to_rgb(v[0]) : Rgb{v[0], v[1], v[2]});
+      }
+      count = 0;
+    }
+  };
+  void values(std::span<const View> views, std::span<const Direction> wi,
+              std::span<Value> out) const override {
+    Together together{f, {}, {}};
+    const auto finish = [&](std::size_t i, Rgb value) {
+      const Rgb f_cos = wi[i].z * value;
+      if (f_cos != Rgb{}) out[i] = {f_cos, sampler.pdf(views[i].wo, wi[i])};
+    };
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      out[i] = {};
+      if (views[i].wo.z > 0 && wi[i].z > 0) together.add(i, shading_geometry(views[i].wo, wi[i]));
+      if (together.count == block) together.evaluate(finish);
+    }
+    together.evaluate(finish);
+  }
+  void samples(std::span<const View> views, std::span<PathBits* const> u,
+               std::span<std::optional<Scattered>> out) const override {
+    if (!sampler.proposes()) return Scattering::samples(views, u, out);
+    Together together{f, {}, {}};
+    const auto finish = [&](std::size_t i, Rgb value) { out[i]->weight = out[i]->weight * value; };
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      out[i].reset();
+      if (!(views[i].wo.z > 0)) continue;
+      UniformBits bits = u[i]->lend();
+      const auto drawn = sampler.propose(views[i].wo, bits);
+      u[i]->take_back(bits);
+      if (!drawn) continue;
+      out[i] = Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->scale)};
+      together.add(i, drawn->geometry);
+      if (together.count == block) together.evaluate(finish);
+    }
+    together.evaluate(finish);
   }
   std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
     if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, uv, u, out);
@@ -134,14 +190,19 @@ struct Blend final : Scattering {
     const float w = share(uv);
     return (1 - w) * a->pdf(wo, wi, uv) + w * b->pdf(wo, wi, uv);
   }
+  Value value(Direction wo, Direction wi, Uv uv) const override {
+    const float w = share(uv);
+    const Value of_a = a->value(wo, wi, uv), of_b = b->value(wo, wi, uv);
+    return {(1 - w) * of_a.f_cos + w * of_b.f_cos, (1 - w) * of_a.pdf + w * of_b.pdf};
+  }
   // One part is drawn by its share; where both have densities, its direction is weighed by the sum of both.
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     const float w = share(uv);
     auto drawn = to_unit_float(u()) < w ? b->sample(wo, uv, u) : a->sample(wo, uv, u);
     if (!drawn || drawn->delta || !has_pdf()) return drawn;
-    drawn->pdf = pdf(wo, drawn->wi, uv);
-    if (!(drawn->pdf > 0)) return std::nullopt;
-    drawn->weight = (1 / drawn->pdf) * f_cos(wo, drawn->wi, uv);
+    const Value v = value(wo, drawn->wi, uv);
+    if (!(v.pdf > 0)) return std::nullopt;
+    drawn->pdf = v.pdf, drawn->weight = (1 / v.pdf) * v.f_cos;
     return drawn;
   }
   std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
@@ -152,6 +213,16 @@ struct Blend final : Scattering {
 };
 
 }  // namespace
+
+void Scattering::values(std::span<const View> views, std::span<const Direction> wi,
+                        std::span<Value> out) const {
+  for (std::size_t i = 0; i < views.size(); ++i) out[i] = value(views[i].wo, wi[i], views[i].uv);
+}
+
+void Scattering::samples(std::span<const View> views, std::span<PathBits* const> u,
+                         std::span<std::optional<Scattered>> out) const {
+  for (std::size_t i = 0; i < views.size(); ++i) out[i] = sample(views[i].wo, views[i].uv, *u[i]);
+}
 
 std::size_t Scattering::sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const {
   std::size_t filled = 0;

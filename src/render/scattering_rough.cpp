@@ -17,25 +17,25 @@ struct RoughConductor final : Scattering {
   Texture specular;
   RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t)
       : normals(r), eta(e), k(absorption), specular(std::move(t)) {}
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
-    if (!(wo.z > 0 && wi.z > 0)) return {};
-    const Direction wh = normalize(wo + wi);
-    const float common = normals.d(wh) * normals.g1(wo) * normals.g1(wi) / (4 * wo.z);
-    return common * (eval(specular, uv) * fresnel_conductor(dot(wo, wh), eta, k));
+  // For both directions above the surface: f cos, and the density with which wi is drawn.
+  Value about(Direction wh, Direction wo, Direction wi, Uv uv) const {
+    const float d = normals.d(wh), g1_o = normals.g1(wo), cosine = dot(wo, wh);
+    const float common = d * g1_o * normals.g1(wi) / (4 * wo.z);
+    return {common * (eval(specular, uv) * fresnel_conductor(cosine, eta, k)),
+            normals.pdf(wo, wh, d, g1_o) / (4 * cosine)};
   }
-  float pdf(Direction wo, Direction wi, Uv) const override {
-    if (!(wo.z > 0 && wi.z > 0)) return 0;
-    const Direction wh = normalize(wo + wi);
-    return normals.pdf(wo, wh) / (4 * dot(wo, wh));
+  Value value(Direction wo, Direction wi, Uv uv) const override {
+    return wo.z > 0 && wi.z > 0 ? about(normalize(wo + wi), wo, wi, uv) : Value{};
   }
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).f_cos; }
+  float pdf(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).pdf; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const Direction wh = normals.sample(wo, u), wi = reflect(wo, wh);
-    const float cosine = dot(wo, wh), density = normals.pdf(wo, wh) / (4 * cosine);
-    if (!(wi.z > 0) || !(cosine > 0) || !(density > 0)) return std::nullopt;
-    const Rgb reflected = eval(specular, uv) * fresnel_conductor(cosine, eta, k);
-    const float common = normals.d(wh) * normals.g1(wo) * normals.g1(wi) / (4 * wo.z);
-    return Scattered{wi, density, (common / density) * reflected};
+    if (!(wi.z > 0) || !(dot(wo, wh) > 0)) return std::nullopt;
+    const Value v = about(wh, wo, wi, uv);
+    if (!(v.pdf > 0)) return std::nullopt;
+    return Scattered{wi, v.pdf, (1 / v.pdf) * v.f_cos};
   }
 };
 
@@ -67,29 +67,19 @@ struct RoughPlastic final : Scattering {
     const float t = transmittance(wo.z), s = (1 - t) * specular_weight, d = t * (1 - specular_weight);
     return s + d > 0 ? s / (s + d) : 1;
   }
-  // For both directions above the surface.
-  Rgb f_cos_about(Direction wh, Direction wo, Direction wi, Uv uv) const {
-    const float gloss = fresnel(dot(wo, wh), p.eta).reflectance * normals.d(wh) * normals.g1(wo) *
-                        normals.g1(wi) / (4 * wo.z);
+  // For both directions above the surface: f cos, and the density with which wi is drawn.
+  Value about(Direction wh, Direction wo, Direction wi, float specular, Uv uv) const {
+    const float d = normals.d(wh), g1_o = normals.g1(wo), cosine = dot(wo, wh);
+    const float gloss = fresnel(cosine, p.eta).reflectance * d * g1_o * normals.g1(wi) / (4 * wo.z);
     const float t = transmittance(wo.z) * transmittance(wi.z) * cosine_pdf(wi) / (p.eta * p.eta);
-    return gloss * eval(p.specular, uv) + t * ground(eval(p.diffuse, uv), inside, p.nonlinear);
-  }
-  float pdf_about(Direction wh, Direction wo, Direction wi, float specular) const {
-    return specular * normals.pdf(wo, wh) / (4 * dot(wo, wh)) + (1 - specular) * cosine_pdf(wi);
-  }
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
-    if (!(wo.z > 0 && wi.z > 0)) return {};
-    return f_cos_about(normalize(wo + wi), wo, wi, uv);
-  }
-  float pdf(Direction wo, Direction wi, Uv) const override {
-    if (!(wo.z > 0 && wi.z > 0)) return 0;
-    return pdf_about(normalize(wo + wi), wo, wi, chance(wo));
+    return {gloss * eval(p.specular, uv) + t * ground(eval(p.diffuse, uv), inside, p.nonlinear),
+            specular * normals.pdf(wo, wh, d, g1_o) / (4 * cosine) + (1 - specular) * cosine_pdf(wi)};
   }
   Value value(Direction wo, Direction wi, Uv uv) const override {
-    if (!(wo.z > 0 && wi.z > 0)) return {};
-    const Direction wh = normalize(wo + wi);
-    return {f_cos_about(wh, wo, wi, uv), pdf_about(wh, wo, wi, chance(wo))};
+    return wo.z > 0 && wi.z > 0 ? about(normalize(wo + wi), wo, wi, chance(wo), uv) : Value{};
   }
+  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).f_cos; }
+  float pdf(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).pdf; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float u1 = to_unit_float(u()), u2 = to_unit_float(u());  // first, for points that are a net in two
@@ -97,10 +87,9 @@ struct RoughPlastic final : Scattering {
     const Direction wi =
         to_unit_float(u()) < specular ? reflect(wo, normals.sample(wo, u1, u2)) : cosine_direction(u1, u2);
     if (!(wi.z > 0)) return std::nullopt;
-    const Direction wh = normalize(wo + wi);
-    const float density = pdf_about(wh, wo, wi, specular);
-    if (!(density > 0)) return std::nullopt;
-    return Scattered{wi, density, (1 / density) * f_cos_about(wh, wo, wi, uv)};
+    const Value v = about(normalize(wo + wi), wo, wi, specular, uv);
+    if (!(v.pdf > 0)) return std::nullopt;
+    return Scattered{wi, v.pdf, (1 / v.pdf) * v.f_cos};
   }
 };
 

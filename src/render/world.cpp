@@ -9,6 +9,10 @@
 
 namespace reflectree::render {
 
+bool competes(const LightSample& light, const Scattering& scattering) {
+  return light.pdf > 0 && (light.delta || scattering.has_pdf());
+}
+
 namespace {
 float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 }  // namespace
@@ -63,22 +67,29 @@ World::World(const Scene& s) : scene(s), embree(s), lights(s) {
 
 float World::near(Point at) const { return 5e-5f * std::max(largest(at), .01f * extent); }
 
-bool World::sees(Point at, Direction direction, float distance) const {
+Ray World::shadow_ray(Point at, Direction direction, float distance) const {
   const float start = near(at);
-  const float end = std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start;
-  return !embree.occluded(at, direction, start, end);
+  return {at, direction, start, std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start};
+}
+
+bool World::sees(Point at, Direction direction, float distance) const {
+  return !embree.occluded(shadow_ray(at, direction, distance));
+}
+
+Lit World::unshadowed(Point at, const LightSample& light, const Scattering::Value& value,
+                      Technique technique) const {
+  const Rgb arriving = value.f_cos * light.radiance;
+  if (arriving == Rgb{}) return {};
+  const bool alone = light.delta || technique == Technique::light;
+  const float share = alone ? 1 : heuristic(technique, light.pdf, value.pdf);
+  return {(share / light.pdf) * arriving, shadow_ray(at, light.direction, light.distance)};
 }
 
 Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
   const auto light = lights.sample(at.on.at, u);
-  if (!light || !(light->pdf > 0) || !(light->delta || at.scattering().has_pdf())) return {};
-  const Direction wi = to_local(at.frame, light->direction);
-  const auto [f_cos, pdf] = at.value(wi);
-  const Rgb arriving = f_cos * light->radiance;
-  if (arriving == Rgb{} || !sees(at.on.at, light->direction, light->distance)) return {};
-  const bool alone = light->delta || technique == Technique::light;
-  const float share = alone ? 1 : heuristic(technique, light->pdf, pdf);
-  return (share / light->pdf) * arriving;
+  if (!light || !competes(*light, at.scattering())) return {};
+  const Lit lit = unshadowed(at.on.at, *light, at.value(to_local(at.frame, light->direction)), technique);
+  return lit.radiance == Rgb{} || embree.occluded(lit.towards) ? Rgb{} : lit.radiance;
 }
 
 }  // namespace reflectree::render

@@ -52,7 +52,6 @@ class RglTable {
     float t1, four_sigma;
   };
   Known known(const ShadingGeometry<float>& g) const;
-  Rgb value(const Known& known, const ShadingGeometry<float>& g) const;
 
   // Nodes of two neighbouring theta_o lie side by side, so that a look-up touches two cache lines.
   struct WarpNode {
@@ -64,6 +63,21 @@ class RglTable {
   struct ColourNode {
     float rgb[2][4];
   };
+  // The stages of a look-up: where the half vector lies in the warp, where that leads in the colours, and
+  // what stands there. Batches take many through each, since both tables are larger than the cache.
+  struct InWarp {
+    const WarpNode* node;
+    const WarpRow* rows;
+    float x, y, u;  // fractions; u: of the half vector's elevation
+  };
+  struct InColour {
+    const ColourNode* node;
+    float x, y;
+  };
+  InWarp in_warp(const Known& known, const ShadingGeometry<float>& g) const;
+  InColour in_colour(const Known& known, const InWarp& at) const;
+  Rgb value(const Known& known, float u, const InColour& at, float cos_theta_i) const;
+
   std::vector<float> theta_o_, sigma_, ndf_;
   std::vector<WarpNode> warp_;  // [theta_o pair][v][u]
   std::vector<WarpRow> rows_;   // [theta_o pair][v]

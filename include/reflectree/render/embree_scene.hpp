@@ -2,7 +2,9 @@
 // The scene's shapes in Embree 3, robust; spheres, rectangles and disks are ours. Nothing else knows Embree.
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <span>
 
 #include "reflectree/render/scene.hpp"
 
@@ -15,12 +17,21 @@ struct Hit {
   double u, v;  // a triangle's barycentric weights of its second and third corner; a flat shape's x and y
 };
 
+struct Ray {
+  Point origin;
+  Direction direction;
+  float near = 0, far = std::numeric_limits<float>::infinity();
+};
+
 class EmbreeScene {
  public:
   // Holds a reference to `scene`. Throws Error where Embree fails.
   explicit EmbreeScene(const Scene& scene);
-  std::optional<Hit> intersect(Point origin, Direction direction, float near) const;
-  bool occluded(Point origin, Direction direction, float near, float far) const;
+  std::optional<Hit> intersect(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+  // Many at once, in packets. `coherent`: neighbours go much the same way.
+  void intersect(std::span<const Ray> rays, bool coherent, std::span<std::optional<Hit>> out) const;
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> out) const;
 
  private:
   const Scene& shapes_;
@@ -36,6 +47,11 @@ struct Interaction {
   std::uint32_t surface;
   Direction normal() const { return normalize(face); }
 };
+inline std::uint32_t surface_of(const Scene& scene, const Hit& hit) {
+  return hit.kind == Hit::Kind::triangle ? scene.triangles[hit.index].surface
+         : hit.kind == Hit::Kind::sphere ? scene.spheres[hit.index].surface
+                                         : scene.disks[hit.index].surface;
+}
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
 
 }  // namespace reflectree::render

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "reflectree/brdf/value.hpp"
@@ -28,6 +29,7 @@ class Environment {
     float pdf;
   };
   Light at(Direction direction) const;
+  void at(std::span<const Direction> directions, std::span<Light> out) const;
   Rgb radiance(Direction direction) const { return at(direction).radiance; }
   float pdf(Direction direction) const { return at(direction).pdf; }
   struct Drawn {
@@ -35,6 +37,8 @@ class Environment {
     Light light;
   };
   Drawn sample(PathBits& u) const;
+  // One for each of `u`.
+  void sample(std::span<PathBits* const> u, std::span<Drawn> out) const;
 
  private:
   // Cell (x, y) lies between the texels (x, y) and (x + 1, y + 1).
@@ -48,7 +52,24 @@ class Environment {
     // Guides: where in `columns` and `mass` the search for a share k / size begins.
     std::vector<std::uint16_t> first_column, first_row;
 
-    Light in_cell(int x, int y, float s, float t, float sine) const;
+    // A place in a cell.
+    struct Place {
+      int x, y;
+      float s, t, sine;
+    };
+    // A draw under way: a row, a share of its mass, and a place in a cell that is still to be found.
+    struct Aim {
+      std::size_t y, guide;
+      float share, s, t;
+    };
+    Place place_of(Direction direction) const;
+    Aim aim(PathBits& u) const;
+    Drawn drawn(const Aim& aim, std::size_t x) const;
+    std::size_t column(const Aim& aim) const;
+    const Rgb* texel(std::size_t x, std::size_t y) const {
+      return texels.data() + y * (std::size_t(width) + 1) + x;
+    }
+    Light in_cell(const Place& p) const;
   };
 
   Rgb constant_;

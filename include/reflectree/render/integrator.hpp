@@ -8,15 +8,34 @@
 
 namespace reflectree::render {
 
+// A camera ray, with its sample's random bits.
+struct Sight {
+  Point origin;
+  Direction direction;
+  PathBits bits;
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  // The radiance that arrives, an estimate from one sample's random bits.
-  virtual Rgb radiance(Point origin, Direction direction, PathBits& u) const = 0;
+  // The radiance that arrives along each, an estimate from its own bits alone; the bits are used up.
+  virtual void radiance(std::span<Sight> sights, std::span<Rgb> out) const = 0;
   // Called before each pass over the picture, of at most longest_pass() samples a pixel from `sample` on:
   // where a sample's share of the work is common to all pixels (photons). Throws Cancelled.
   virtual void prepare(int /*sample*/, std::uint64_t /*seed*/, const Host& /*host*/) {}
   virtual int longest_pass() const { return 8; }
+};
+
+// One that takes them one after the other.
+class OneByOne : public Integrator {
+ public:
+  void radiance(std::span<Sight> sights, std::span<Rgb> out) const final {
+    for (std::size_t i = 0; i < sights.size(); ++i)
+      out[i] = radiance(sights[i].origin, sights[i].direction, sights[i].bits);
+  }
+
+ protected:
+  virtual Rgb radiance(Point origin, Direction direction, PathBits& u) const = 0;
 };
 
 // By scene.transport. Holds a reference to the scene. Throws Error for a technique that it does not know.

@@ -21,10 +21,14 @@ class Lights {
   explicit Lights(const Scene& scene);  // holds a reference
 
   std::optional<LightSample> sample(Point at, PathBits& u) const;
+  // One for each point, from its bits.
+  void sample(std::span<const Point> at, std::span<PathBits* const> u,
+              std::span<std::optional<LightSample>> out) const;
   // Density with which `sample` finds what a ray from `at` has hit; 0 for what does not shine.
   float pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const;
   // What the environment sends, and the density with which `sample` finds it.
   Environment::Light environment(Direction direction) const;
+  void environment(std::span<const Direction> directions, std::span<Environment::Light> out) const;
 
  private:
   struct Light {
@@ -33,6 +37,8 @@ class Lights {
     std::vector<std::uint32_t> parts;  // triangles
     std::vector<double> cdf;           // of their areas
   };
+  const Light& chosen(PathBits& u) const;
+  std::optional<LightSample> sample_light(const Light& light, Point at, PathBits& u) const;
   std::optional<LightSample> sample_area(Point at, Point on, Direction normal, double area,
                                          Rgb radiance) const;
 

@@ -25,7 +25,7 @@ struct PhotonMaps {
 std::vector<Photon> trace_photons(const World& world, const Emission& emission, std::size_t count,
                                   std::uint64_t seed, int sample, const Host& host);
 
-class PhotonMapper final : public Integrator {
+class PhotonMapper final : public OneByOne {
  public:
   PhotonMapper(const Scene& scene, Technique technique);
   void prepare(int sample, std::uint64_t seed, const Host& host) override;

@@ -9,7 +9,7 @@
 
 namespace reflectree::render {
 
-class RecursiveTracer final : public Integrator {
+class RecursiveTracer final : public OneByOne {
  public:
   // `max_depth` counts path edges; -1: no limit. Throws Error for a split beyond max_split.
   RecursiveTracer(const Scene& scene, Technique technique, int split, int max_depth);

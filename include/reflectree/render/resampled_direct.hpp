@@ -10,7 +10,7 @@
 
 namespace reflectree::render {
 
-class ResampledDirect final : public Integrator {
+class ResampledDirect final : public OneByOne {
  public:
   // Throws Error for more candidates than max_split.
   ResampledDirect(const Scene& scene, int candidates);

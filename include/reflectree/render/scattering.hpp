@@ -34,16 +34,24 @@ class Scattering {
   virtual Rgb f_cos(Direction wo, Direction wi, Uv uv) const = 0;
   // Density of `sample`, without deltas.
   virtual float pdf(Direction wo, Direction wi, Uv uv) const = 0;
-  // Both at once; without light there need be no density.
+  // Both at once.
   struct Value {
     Rgb f_cos;
     float pdf = 0;
   };
   virtual Value value(Direction wo, Direction wi, Uv uv) const {
-    const Rgb f = f_cos(wo, wi, uv);
-    return f == Rgb{} ? Value{} : Value{f, pdf(wo, wi, uv)};
+    return {f_cos(wo, wi, uv), pdf(wo, wi, uv)};
   }
   virtual std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const = 0;
+  // Many at once, each its own: of a surface's point, from where it is seen. Without light, `values` need
+  // give no density.
+  struct View {
+    Direction wo;
+    Uv uv;
+  };
+  virtual void values(std::span<const View> views, std::span<const Direction> wi, std::span<Value> out) const;
+  virtual void samples(std::span<const View> views, std::span<PathBits* const> u,
+                       std::span<std::optional<Scattered>> out) const;
   // One direction for each of `u`, whose bits stand at its decision; returns how many were filled, with their
   // bits moved to the front. A mean over the directions is a sum over those filled divided by u.size().
   virtual std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const;

@@ -15,6 +15,10 @@ enum class Technique {
   resampled  // the surface's directions, resampled by the light that they see: direct lighting alone
 };
 
+// Whether next-event estimation may count a sample: where a surface's directions have no density, they are
+// left to find what they can, all but points and directions.
+bool competes(const LightSample& light, const Scattering& scattering);
+
 // Of a technique with density `own` > 0 against the one with `other`.
 float heuristic(Technique technique, float own, float other);
 
@@ -36,14 +40,23 @@ struct PathVertex {
   Rgb emitted() const { return wo.z > 0 ? surface->radiance : Rgb{}; }
 };
 
+// Light that reaches a vertex, reflected back, if nothing stands in the ray's way.
+struct Lit {
+  Rgb radiance;
+  Ray towards;
+};
+
 struct World {
   explicit World(const Scene& scene);  // holds a reference
 
   // How far from a surface rays start: well above the rounding of its coordinates.
   float near(Point at) const;
+  // Stops short of what it leads to.
+  Ray shadow_ray(Point at, Direction direction, float distance) const;
   bool sees(Point at, Direction direction, float distance) const;
   // Next-event estimation: a point on a light, weighed against the directions that the surface would draw.
-  // Where those have no density, they are left to find what they can: all but points and directions.
+  Lit unshadowed(Point at, const LightSample& light, const Scattering::Value& value,
+                 Technique technique) const;
   Rgb direct(const PathVertex& at, Technique technique, PathBits& u) const;
 
   const Scene& scene;

@@ -19,6 +19,12 @@ concept ManyDirectionsSampler = DirectionSampler<S> &&
   { s.sample_n(w, u, out) } -> std::same_as<std::size_t>;
 };
 
+// A sampler that draws without the function.
+template <class S>
+concept ProposingSampler = DirectionSampler<S> && requires(const S& s, Direction w, UniformBits& u) {
+  { s.propose(w, u) } -> std::same_as<std::optional<Proposal>>;
+};
+
 template <BrdfValue V>
 class AnySampler {
  public:
@@ -47,6 +53,9 @@ class AnySampler {
   }
   // Whether it divides N directions itself, rather than drawing one after the other.
   bool divides() const { return self_->divides; }
+  // What `sample` draws, without the function; for samplers that need it to draw, never called.
+  bool proposes() const { return self_->proposes; }
+  std::optional<Proposal> propose(Direction wo, UniformBits& u) const { return self_->propose(wo, u); }
   bool has_pdf() const { return self_->has_pdf; }
   // Per solid angle, sr^-1; 0 for a method without a density.
   float pdf(Direction wo, Direction wi) const { return self_->pdf(wo, wi); }
@@ -55,10 +64,11 @@ class AnySampler {
   struct Interface {
     std::string name;
     std::size_t bytes = 0;
-    bool has_pdf = false, divides = false;
+    bool has_pdf = false, divides = false, proposes = false;
     virtual ~Interface() = default;
     virtual std::optional<DirectionSample<V>> sample(Direction, UniformBits&) const = 0;
     virtual std::size_t sample_n(Direction, UniformBits&, std::span<DirectionSample<V>>) const = 0;
+    virtual std::optional<Proposal> propose(Direction, UniformBits&) const = 0;
     virtual float pdf(Direction, Direction) const = 0;
   };
   template <class S>
@@ -66,7 +76,7 @@ class AnySampler {
     S sampler;
     Model(std::string the_name, std::size_t the_bytes, S s) : sampler(std::move(s)) {
       this->name = std::move(the_name), this->bytes = the_bytes, this->has_pdf = DensitySampler<S>;
-      this->divides = ManyDirectionsSampler<S>;
+      this->divides = ManyDirectionsSampler<S>, this->proposes = ProposingSampler<S>;
     }
     std::optional<DirectionSample<V>> sample(Direction wo, UniformBits& u) const override {
       return sampler.sample(wo, u);
@@ -81,6 +91,10 @@ class AnySampler {
         }
         return filled;
       }
+    }
+    std::optional<Proposal> propose(Direction wo, UniformBits& u) const override {
+      if constexpr (ProposingSampler<S>) return sampler.propose(wo, u);
+      return std::nullopt;
     }
     float pdf(Direction wo, Direction wi) const override {
       if constexpr (DensitySampler<S>) return sampler.pdf(wo, wi);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/brdf/value.hpp"
 #include "reflectree/math/direction.hpp"
 #include "reflectree/math/random.hpp"
@@ -23,6 +24,14 @@ struct DirectionSample {
   float pdf = 0;  // per solid angle, sr^-1
   V weight{};     // f_cos / pdf, per channel
   std::uint32_t flags = sample_reflection;
+};
+
+// A direction drawn without the function: its weight is scale * f(geometry), in the frame where wo has no y.
+struct Proposal {
+  Direction wi;
+  float pdf;  // per solid angle
+  ShadingGeometry<float> geometry;
+  float scale;
 };
 
 // sample: nullopt is "no sample" (wo below the horizon or not finite, albedo 0, trials exhausted).

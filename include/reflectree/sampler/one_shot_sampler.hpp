@@ -51,6 +51,21 @@ class OneShotSampler {
     });
   }
 
+  // The same without f, for who evaluates many together.
+  template <RandomBits U>
+  std::optional<Proposal> propose(Direction wo, U& u) const {
+    Incidence in;
+    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    const detail::ChosenLeaf leaf =
+        detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
+    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+      bool coin;
+      const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
+      return std::optional(proposal(domain, in, at, domain.half && coin));
+    });
+  }
+
   // out.size() samples in one call, divided among the leaves systematically; returns how many were filled
   // (all or, for "no sample", none). Stratified, ordered by leaf, not independent; averages are unbiased.
   template <RandomBits U>
@@ -134,10 +149,16 @@ class OneShotSampler {
 
   REFLECTREE_INLINE DirectionSample<Value> finish(const Domain& domain, const Incidence& in,
                                                   const detail::PointInLeaf& at, bool mirrored) const {
+    const Proposal p = proposal(domain, in, at, mirrored);
+    return {p.wi, p.pdf, scaled(eval(f_, p.geometry), p.scale), sample_reflection};
+  }
+
+  REFLECTREE_INLINE Proposal proposal(const Domain& domain, const Incidence& in,
+                                      const detail::PointInLeaf& at, bool mirrored) const {
     const DomainPoint point = lift(domain, in.wo, at.p, mirrored);
     const float pdf_disk = at.height / point.projected_area, inverse = point.projected_area / at.height;
-    return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i,
-            scaled(eval(f_, point.geometry), inverse), sample_reflection};
+    return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i, point.geometry,
+            inverse};
   }
 
   F f_;
