@@ -100,7 +100,7 @@ TEST(Rgl, BatchesAreOneByOne) {
   Pcg32 u(8);
   for (int i = 0; i < 301; ++i) {
     const auto any = [&u] {
-      return direction(100 * double(to_unit_float(u())), 6 * double(to_unit_float(u())));
+      return direction_from_angles(1.8f * to_unit_float(u()), 6 * to_unit_float(u()));
     };
     wo.push_back(i % 3 == 1 ? wo.back() : any()), wi.push_back(any());
   }

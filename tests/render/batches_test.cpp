@@ -168,12 +168,12 @@ double worst_slope(float bent) {
 }
 
 TEST(Batches, VisibleSlopesInvertTheirShare) {
-  EXPECT_LT(worst_slope(0), 2e-6);
+  EXPECT_LT(worst_slope(0), 1e-6);
   EXPECT_GT(worst_slope(1e-4f), 2e-5);  // and a bend is seen
   Pcg32 u(1);
   for (int i = 0; i < 4096; ++i) {
     const float x = 4 * to_unit_float(u());
-    ASSERT_NEAR(scaled_erfc(x) * std::exp(-x * x), std::erfc(x), 3e-7f);
+    ASSERT_NEAR(scaled_erfc(x) * std::exp(-x * x), std::erfc(x), 5e-7f);
   }
 }
 
