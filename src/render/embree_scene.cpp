@@ -16,7 +16,7 @@ namespace reflectree::render {
 
 namespace {
 
-constexpr std::size_t stream_length = 256;  // of the rays that Embree gets at once
+constexpr std::size_t stream_length = 64;  // of the rays that Embree gets at once
 
 RTCRay ray_from(const Ray& r) {
   RTCRay ray{};
@@ -78,7 +78,7 @@ bool distance_to(const Scene& scene, unsigned index, RTCRayN* r, unsigned n, uns
 }
 
 // A place on a flat shape in double precision, as it was met.
-std::optional<Hit> hit_of(const Scene& scene, const Ray& ray, const RTCRayHit& r) {
+REFLECTREE_INLINE std::optional<Hit> hit_of(const Scene& scene, const Ray& ray, const RTCRayHit& r) {
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   Hit hit{Hit::Kind(r.hit.geomID), r.hit.primID, r.ray.tfar, double(r.hit.u), double(r.hit.v)};
   if (hit.kind == Hit::Kind::rectangle || hit.kind == Hit::Kind::disk) {

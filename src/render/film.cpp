@@ -72,19 +72,19 @@ Tile tile_of(const Scene& scene, std::size_t i) {
 }
 
 void add_sample(const Integrator& integrator, const Scene& scene, const Tile& tile, int sample, Film& film) {
-  std::vector<Sight> sights;
-  sights.reserve(std::size_t(tile_size) * tile_size);
+  std::vector<CameraRay> rays;
+  rays.reserve(std::size_t(tile_size) * tile_size);
   const auto pixel = [&](int x, int y) { return std::size_t(y) * std::size_t(scene.width) + std::size_t(x); };
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       PathBits u(film.points, film.seed, pixel(x, y), std::uint32_t(sample));
       const Vec2<float> off = offset(scene.filter, u);
       const Direction along = through(scene, float(x) + .5f + off.x, float(y) + .5f + off.y);
-      sights.push_back({scene.camera.origin, along, u});
+      rays.push_back({scene.camera.origin, along, u});
     }
   }
-  std::vector<Rgb> found(sights.size());
-  integrator.radiance(sights, found);
+  std::vector<Rgb> found(rays.size());
+  integrator.radiance(rays, found);
   std::size_t n = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x, ++n) {

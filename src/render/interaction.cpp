@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "flat.hpp"
+#include "reflectree/brdf/fast_trigonometry.hpp"
+#include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/render/embree_scene.hpp"
 
 namespace reflectree::render {
@@ -28,12 +30,13 @@ Interaction on_sphere(const Sphere& s, Point about) {
   const Vec3<double> from = Vec3<double>{about.x, about.y, about.z} - s.centre, out = normalize(from);
   const Vec3<double> at = s.centre + s.radius * out;
   const Direction n{float(out.x), float(out.y), float(out.z)}, local = to_local(s.axes, n);
-  const float turn = std::atan2(local.y, local.x) / (2 * pi);
+  const float turn = detail::angle(local.y, local.x) / (2 * pi);
+  const float polar = detail::angle(std::sqrt(sin2_theta(local)), local.z) / pi;
   const Direction facing = s.inwards ? -n : n;
   return {{float(at.x), float(at.y), float(at.z)},
           facing,
           facing,
-          {turn < 0 ? turn + 1 : turn, std::acos(clamp(local.z, -1.f, 1.f)) / pi},
+          {turn < 0 ? turn + 1 : turn, polar},
           s.surface};
 }
 

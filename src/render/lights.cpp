@@ -24,7 +24,8 @@ double cone_of(const Sphere& s, Point at) {
   return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
 }
 
-std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance, PathBits& u) {
+REFLECTREE_INLINE std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance,
+                                                           PathBits& u) {
   const double cone = cone_of(s, at);
   if (!(cone > 0) || s.inwards) return std::nullopt;
   const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
@@ -42,6 +43,26 @@ std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance
                      radiance};
 }
 
+REFLECTREE_INLINE std::optional<LightSample> sample_area(Point at, Point on, Direction normal, double area,
+                                                         Rgb radiance) {
+  const float distance = length(on - at);
+  if (!(distance > 0)) return std::nullopt;
+  const Direction direction = (1 / distance) * (on - at);
+  const float cosine = -dot(normal, direction);
+  if (!(cosine > 0)) return std::nullopt;
+  return LightSample{direction, distance, distance * distance / (cosine * float(area)), false, radiance};
+}
+
+// A triangle's normal on the side of its corners' shading normals; zero where they do not agree on one.
+Direction facing(const Scene& scene, const Triangle& t) {
+  const Vertex &a = scene.vertices[t.corner[0]], &b = scene.vertices[t.corner[1]],
+               &c = scene.vertices[t.corner[2]];
+  const Direction own = cross(b.at - a.at, c.at - a.at);
+  const float sides[] = {dot(own, a.normal), dot(own, b.normal), dot(own, c.normal)};
+  const auto [low, high] = std::minmax_element(std::begin(sides), std::end(sides));
+  return *low >= 0 ? normalize(own) : *high < 0 ? -normalize(own) : Direction{};
+}
+
 }  // namespace
 
 Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size()) {
@@ -52,15 +73,16 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
     if (!shines(scene.surfaces[t.surface].radiance)) continue;
     if (light_of[t.surface] == std::size_t(-1)) {
       light_of[t.surface] = lights_.size();
-      lights_.push_back({Kind::mesh, t.surface, {}, {}});
+      lights_.push_back({Kind::mesh, t.surface, {}, {}, {}});
     }
     const Point a = scene.vertices[t.corner[0]].at;
     area_[t.surface] +=
         double(length(cross(scene.vertices[t.corner[1]].at - a, scene.vertices[t.corner[2]].at - a))) / 2;
     Light& light = lights_[light_of[t.surface]];
     light.parts.push_back(i), light.cdf.push_back(area_[t.surface]);
+    light.normals.push_back(facing(scene, t));
   }
-  const auto add = [&](Kind kind, std::size_t i) { lights_.push_back({kind, std::uint32_t(i), {}, {}}); };
+  const auto add = [&](Kind kind, std::size_t i) { lights_.push_back({kind, std::uint32_t(i), {}, {}, {}}); };
   for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
     if (shines(scene.surfaces[scene.spheres[i].surface].radiance)) add(Kind::sphere, i);
   }
@@ -75,16 +97,6 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
   if (scene.environment) add(Kind::environment, 0);
 }
 
-std::optional<LightSample> Lights::sample_area(Point at, Point on, Direction normal, double area,
-                                               Rgb radiance) const {
-  const float distance = length(on - at);
-  if (!(distance > 0)) return std::nullopt;
-  const Direction direction = (1 / distance) * (on - at);
-  const float cosine = -dot(normal, direction);
-  if (!(cosine > 0)) return std::nullopt;
-  return LightSample{direction, distance, distance * distance / (cosine * float(area)), false, radiance};
-}
-
 const Lights::Light& Lights::chosen(PathBits& u) const {
   return lights_[std::size_t((std::uint64_t(u()) * lights_.size()) >> 32U)];
 }
@@ -92,7 +104,9 @@ const Lights::Light& Lights::chosen(PathBits& u) const {
 std::optional<LightSample> Lights::sample(Point at, PathBits& u) const {
   if (lights_.empty()) return std::nullopt;
   const InPhase sampling(Phase::sample);
-  return sample_light(chosen(u), at, u);
+  std::optional<LightSample> s;
+  sample_light(chosen(u), at, u, s);
+  return s;
 }
 
 void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
@@ -117,22 +131,31 @@ void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
       bits[waiting] = u[i], places[waiting] = std::uint32_t(i);
       if (++waiting == bits.size()) from_environment();
     } else {
-      out[i] = sample_light(light, at[i], *u[i]);
+      sample_light(light, at[i], *u[i], out[i]);
     }
   }
   from_environment();
 }
 
-std::optional<LightSample> Lights::sample_light(const Light& light, Point at, PathBits& u) const {
-  std::optional<LightSample> s;
+// In place: `s` is empty before.
+void Lights::sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const {
   switch (light.kind) {
     case Light::Kind::mesh: {
       const double pick = to_unit_double(u()) * light.cdf.back();
-      const auto i = std::upper_bound(light.cdf.begin(), light.cdf.end() - 1, pick) - light.cdf.begin();
-      const double root = std::sqrt(to_unit_double(u())), c = root * to_unit_double(u());
-      const Hit hit{Hit::Kind::triangle, light.parts[std::size_t(i)], 0, root - c, c};
-      const Interaction on = interaction_at(scene_, hit, {}, {});
-      s = sample_area(at, on.at, on.normal(), light.cdf.back(), scene_.surfaces[light.index].radiance);
+      const auto i =
+          std::size_t(std::upper_bound(light.cdf.begin(), light.cdf.end() - 1, pick) - light.cdf.begin());
+      const double root = std::sqrt(to_unit_double(u())), c = root * to_unit_double(u()), b = root - c;
+      const Rgb radiance = scene_.surfaces[light.index].radiance;
+      if (light.normals[i] == Direction{}) {
+        const Interaction on = interaction_at(scene_, {Hit::Kind::triangle, light.parts[i], 0, b, c}, {}, {});
+        s = sample_area(at, on.at, on.normal(), light.cdf.back(), radiance);
+      } else {
+        const auto& corner = scene_.triangles[light.parts[i]].corner;
+        const auto v = float(b), w = float(c);
+        const Point on = (1 - v - w) * scene_.vertices[corner[0]].at + v * scene_.vertices[corner[1]].at +
+                         w * scene_.vertices[corner[2]].at;
+        s = sample_area(at, on, light.normals[i], light.cdf.back(), radiance);
+      }
       break;
     }
     case Light::Kind::sphere: {
@@ -156,7 +179,7 @@ std::optional<LightSample> Lights::sample_light(const Light& light, Point at, Pa
     case Light::Kind::point: {
       const PointLight& p = scene_.point_lights[light.index];
       const float distance = length(p.at - at);
-      if (!(distance > 0)) return std::nullopt;
+      if (!(distance > 0)) return;
       s = LightSample{(1 / distance) * (p.at - at), distance, 1, true,
                       (1 / (distance * distance)) * p.intensity};
       break;
@@ -173,7 +196,6 @@ std::optional<LightSample> Lights::sample_light(const Light& light, Point at, Pa
     }
   }
   if (s) s->pdf /= float(lights_.size());
-  return s;
 }
 
 float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const {

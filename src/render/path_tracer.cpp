@@ -64,12 +64,12 @@ PathTracer::PathTracer(const Scene& scene, Technique technique) : world_(scene),
   groups_ = known.size();
 }
 
-void PathTracer::radiance(std::span<Sight> sights, std::span<Rgb> out) const {
+void PathTracer::radiance(std::span<CameraRay> rays, std::span<Rgb> out) const {
   Wave wave;
-  std::fill_n(out.begin(), sights.size(), Rgb{});
-  for (std::size_t i = 0; i < sights.size(); ++i) {
-    wave.paths.push_back({&sights[i].bits, &out[i]});
-    wave.rays.push_back({sights[i].origin, sights[i].direction});
+  std::fill_n(out.begin(), rays.size(), Rgb{});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    wave.paths.push_back({&rays[i].bits, &out[i]});
+    wave.rays.push_back({rays[i].origin, rays[i].direction});
   }
   // `depth` counts edges: 1 is what the camera sees directly.
   const int last = world_.scene.max_depth;

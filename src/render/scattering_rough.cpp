@@ -3,6 +3,7 @@
 #include <array>
 
 #include "cosine_lobe.hpp"
+#include "each.hpp"
 #include "fresnel.hpp"
 #include "microfacet.hpp"
 #include "reflectree/render/scattering.hpp"
@@ -11,7 +12,7 @@ namespace reflectree::render {
 
 namespace {
 
-struct RoughConductor final : Scattering {
+struct RoughConductor final : Each<RoughConductor> {
   Microfacets normals;
   Rgb eta, k;
   Texture specular;
@@ -43,7 +44,7 @@ struct RoughConductor final : Scattering {
 // the table for diffuse light from inside; its plastic's albedo depends on both, and ours must be its.
 constexpr std::size_t nodes = 64;
 
-struct RoughPlastic final : Scattering {
+struct RoughPlastic final : Each<RoughPlastic> {
   Plastic p;
   Microfacets normals;
   std::array<float, nodes> through{};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cosine_lobe.hpp"
+#include "each.hpp"
 #include "fresnel.hpp"
 #include "reflectree/render/scattering.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr Direction mirrored(Direction w) { return {-w.x, -w.y, w.z}; }
 
-struct Diffuse final : Scattering {
+struct Diffuse final : Each<Diffuse> {
   Texture reflectance;
   explicit Diffuse(Texture t) : reflectance(std::move(t)) {}
   Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
@@ -26,7 +27,7 @@ struct Diffuse final : Scattering {
   }
 };
 
-struct Conductor final : Scattering {
+struct Conductor final : Each<Conductor> {
   Rgb eta, k;
   Texture specular;
   Conductor(Rgb e, Rgb absorption, Texture t) : eta(e), k(absorption), specular(std::move(t)) {}
@@ -41,7 +42,7 @@ struct Conductor final : Scattering {
 
 // Light that is not reflected enters, is scattered by a Lambertian ground, and leaves or turns back at the
 // interface, (1 - F_i) (1 - F_o) rho / (pi eta^2 (1 - rho F_inside)); Mitsuba's default drops the rho below.
-struct SmoothPlastic final : Scattering {
+struct SmoothPlastic final : Each<SmoothPlastic> {
   Plastic p;
   float inside, specular_weight;
   explicit SmoothPlastic(Plastic parameters)
@@ -76,7 +77,7 @@ struct SmoothPlastic final : Scattering {
 
 // Radiance that is refracted is scaled by the square of the relative index: it is squeezed into a narrower
 // cone (Veach 1997, 5.2).
-struct Glass final : Scattering {
+struct Glass final : Each<Glass> {
   float eta;
   Texture reflectance, transmittance;
   Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}

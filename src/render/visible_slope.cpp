@@ -52,7 +52,7 @@ class Slopes {
       const float next = x - newton / (1 + newton * (x + .5f * sine_ / facing));
       const bool inside = next >= low && next <= high;
       x = inside ? next : (low + high) / 2;
-      if (inside && std::abs(newton) < .01f) break;  // what is left is about its cube
+      if (inside && std::abs(newton) < .004f) break;  // what is left is about its cube
     }
     return x;
   }

@@ -93,6 +93,25 @@ TEST(Rgl, WarpInvertsALinearDensity) {
   EXPECT_GT(worst_error(table, expected(true)), 1e-2) << "a missing warp must show";
 }
 
+// Blocks, look-ups shared by neighbours of one wo, and pairs below the surface.
+TEST(Rgl, BatchesAreOneByOne) {
+  const RglTable table = read_rgl(synthetic::rgl_file(), "test");
+  std::vector<Direction> wo, wi;
+  Pcg32 u(8);
+  for (int i = 0; i < 301; ++i) {
+    const auto any = [&u] {
+      return direction_from_angles(1.8f * to_unit_float(u()), 6 * to_unit_float(u()));
+    };
+    wo.push_back(i % 3 == 1 ? wo.back() : any()), wi.push_back(any());
+  }
+  std::vector<float> values(3 * wo.size(), -1);
+  table.eval(wo, wi, values);
+  for (std::size_t i = 0; i < wo.size(); ++i) {
+    const Rgb alone = wo[i].z > 0 && wi[i].z > 0 ? eval(table, wo[i], wi[i]) : Rgb{};
+    EXPECT_EQ(alone, (Rgb{values[3 * i], values[3 * i + 1], values[3 * i + 2]})) << i;
+  }
+}
+
 TEST(Rgl, TellsItsKnotsAndCountsWhatItClamps) {
   synthetic::RglRecipe recipe;
   recipe.rgb = [](int, int c, float x, float) { return c == 1 && x == 0 ? -1.f : 1.f; };

@@ -16,10 +16,6 @@ using Exact = Vec3<long double>;
 Exact exact(Vec3<double> p) { return {p.x, p.y, p.z}; }
 Exact exact(Point p) { return {p.x, p.y, p.z}; }
 
-struct Ray {
-  Point origin;
-  Direction direction;
-};
 // The plane first, then its coordinates by the normal equations: another way than the renderer's.
 struct Truth {
   long double distance, x, y;
@@ -91,7 +87,7 @@ Errors errors(double size, double sine, Made made) {
       const Ray ray = towards(u, f, between(u, -.9, .9), between(u, -.9, .9), sine);
       const Truth t = truth(f, ray);
       if (std::abs(t.x) > .99L || std::abs(t.y) > .99L || !(t.distance > 0)) continue;  // the ray was rounded
-      const auto hit = embree.intersect(ray.origin, ray.direction, 0);
+      const auto hit = embree.intersect(ray);
       if (!hit) {
         ++worst.missed;
         continue;
@@ -139,9 +135,9 @@ int wrong_at_edges(bool disk, double size, Made made) {
       const Truth t = truth(f, ray);
       const long double beyond = disk ? t.x * t.x + t.y * t.y - 1 : std::abs(t.x) - 1;
       if (std::abs(beyond) < 1e-12L) continue;  // what double precision cannot tell
-      const bool met = bool(embree.intersect(ray.origin, ray.direction, 0)), hits = beyond < 0;
+      const bool met = bool(embree.intersect(ray)), hits = beyond < 0;
       ++(hits ? inside : outside);
-      wrong += met != hits || met != embree.occluded(ray.origin, ray.direction, 0, 1e30f);
+      wrong += met != hits || met != embree.occluded(ray);
     }
   }
   EXPECT_GT(std::min(inside, outside), 1000) << "both sides are tried";
@@ -186,7 +182,7 @@ TEST(Flat, LampsAreDrawnEvenlyWithTheDensityOfTheirHits) {
       const auto drawn = lights.sample(eye, u);
       ASSERT_TRUE(drawn);
       sum += 1 / double(drawn->pdf), squares += 1 / (double(drawn->pdf) * double(drawn->pdf));
-      const auto hit = embree.intersect(eye, drawn->direction, 0);
+      const auto hit = embree.intersect({eye, drawn->direction});
       if (!hit) continue;  // an edge
       const Interaction on = interaction_at(scene, *hit, eye, drawn->direction);
       EXPECT_NEAR(lights.pdf(eye, drawn->direction, *hit, on) / drawn->pdf, 1, 1e-5);
@@ -221,7 +217,7 @@ TEST(Flat, NormalsFollowMirrorsAndFlipsAndTextureCoordinatesDoNot) {
                       "0,-4,1"),
           "flat.xml");
       const Point above{.5f, .25f, 1};
-      const auto hit = EmbreeScene(scene).intersect(above, {0, 0, -1}, 0);
+      const auto hit = EmbreeScene(scene).intersect({above, {0, 0, -1}});
       return interaction_at(scene, *hit, above, {0, 0, -1});
     };
     const Interaction plain = seen("x=\"1\"", "false"), flipped = seen("x=\"1\"", "true"),

@@ -60,7 +60,7 @@ Expected expected(const Scene& scene) {
   for (int i = 0; i < n; ++i) {
     const float x = (2 * to_unit_float(u()) - 1) * c.tan_x, y = (2 * to_unit_float(u()) - 1) * c.tan_y;
     const Direction along = normalize(c.forward + x * c.left + y * c.up);
-    const auto hit = embree.intersect(c.origin, along, 0);
+    const auto hit = embree.intersect({c.origin, along});
     double value = 1, lossless = 1;
     if (hit) {
       const Interaction on = interaction_at(scene, *hit, c.origin, along);

@@ -48,9 +48,16 @@ struct Interaction {
   Direction normal() const { return normalize(face); }
 };
 inline std::uint32_t surface_of(const Scene& scene, const Hit& hit) {
-  return hit.kind == Hit::Kind::triangle ? scene.triangles[hit.index].surface
-         : hit.kind == Hit::Kind::sphere ? scene.spheres[hit.index].surface
-                                         : scene.disks[hit.index].surface;
+  switch (hit.kind) {
+    case Hit::Kind::triangle:
+      return scene.triangles[hit.index].surface;
+    case Hit::Kind::sphere:
+      return scene.spheres[hit.index].surface;
+    case Hit::Kind::rectangle:
+      return scene.rectangles[hit.index].surface;
+    default:
+      return scene.disks[hit.index].surface;
+  }
 }
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
 

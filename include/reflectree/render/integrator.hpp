@@ -9,7 +9,7 @@
 namespace reflectree::render {
 
 // A camera ray, with its sample's random bits.
-struct Sight {
+struct CameraRay {
   Point origin;
   Direction direction;
   PathBits bits;
@@ -19,7 +19,7 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   // The radiance that arrives along each, an estimate from its own bits alone; the bits are used up.
-  virtual void radiance(std::span<Sight> sights, std::span<Rgb> out) const = 0;
+  virtual void radiance(std::span<CameraRay> rays, std::span<Rgb> out) const = 0;
   // Called before each pass over the picture, of at most longest_pass() samples a pixel from `sample` on:
   // where a sample's share of the work is common to all pixels (photons). Throws Cancelled.
   virtual void prepare(int /*sample*/, std::uint64_t /*seed*/, const Host& /*host*/) {}
@@ -29,9 +29,9 @@ class Integrator {
 // One that takes them one after the other.
 class OneByOne : public Integrator {
  public:
-  void radiance(std::span<Sight> sights, std::span<Rgb> out) const final {
-    for (std::size_t i = 0; i < sights.size(); ++i)
-      out[i] = radiance(sights[i].origin, sights[i].direction, sights[i].bits);
+  void radiance(std::span<CameraRay> rays, std::span<Rgb> out) const final {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      out[i] = radiance(rays[i].origin, rays[i].direction, rays[i].bits);
   }
 
  protected:

@@ -36,11 +36,10 @@ class Lights {
     std::uint32_t index;               // among its kind; of a mesh, its surface
     std::vector<std::uint32_t> parts;  // triangles
     std::vector<double> cdf;           // of their areas
+    std::vector<Direction> normals;    // theirs; zero where it turns with the shading normal
   };
   const Light& chosen(PathBits& u) const;
-  std::optional<LightSample> sample_light(const Light& light, Point at, PathBits& u) const;
-  std::optional<LightSample> sample_area(Point at, Point on, Direction normal, double area,
-                                         Rgb radiance) const;
+  void sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const;
 
   const Scene& scene_;
   std::vector<Light> lights_;

@@ -12,7 +12,7 @@ namespace reflectree::render {
 class PathTracer final : public Integrator {
  public:
   explicit PathTracer(const Scene& scene, Technique technique = Technique::balance);
-  void radiance(std::span<Sight> sights, std::span<Rgb> out) const override;
+  void radiance(std::span<CameraRay> rays, std::span<Rgb> out) const override;
 
  private:
   struct Wave;
