@@ -152,6 +152,56 @@ TEST(Flat, EdgesAreWhereTheyAre) {
   }
 }
 
+// Rectangles, disks, balls and triangles among each other, by single rays and in packets.
+TEST(Flat, PacketsMeetWhatSingleRaysMeet) {
+  Pcg32 u(5);
+  Scene scene;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    scene.surfaces.push_back({diffuse({{.5f, .5f, .5f}, nullptr}), {}});
+    Flat f = leaning(u, 1);
+    f.surface = i;
+    if (i % 4 == 0) scene.rectangles.push_back(f);
+    if (i % 4 == 1) scene.disks.push_back(f);
+    if (i % 4 == 2) scene.spheres.push_back({f.centre, .2, false, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, i});
+    if (i % 4 == 3) add_triangles(scene, f, f.normal);
+  }
+  const EmbreeScene embree(scene);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3<double> from = within(u, 3);
+    rays.push_back({rounded(from), rounded(normalize(within(u, 1) - from)), 0, i % 3 == 0 ? 3.f : 1e30f});
+  }
+  for (const bool coherent : {false, true}) {
+    std::vector<std::optional<Hit>> hits(rays.size());
+    std::vector<std::uint8_t> shadows(rays.size());
+    embree.intersect(rays, coherent, hits);
+    embree.occluded(rays, shadows);
+    std::array<int, 4> met{};
+    int open = 0, mixed = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto hit = embree.intersect(rays[i]);
+      ASSERT_EQ(bool(hit), bool(hits[i])) << i;
+      ASSERT_EQ(embree.occluded(rays[i]), shadows[i] != 0) << i;
+      ASSERT_EQ(bool(hit), shadows[i] != 0) << i;
+      if (!hit) {
+        ++open;
+        continue;
+      }
+      ++met[std::size_t(hit->kind)];
+      mixed += i > 0 && hits[i - 1] && hits[i - 1]->index != hit->index;
+      const Interaction on = interaction_at(scene, *hits[i], rays[i].origin, rays[i].direction);
+      ASSERT_EQ(hit->kind, hits[i]->kind);
+      ASSERT_EQ(hit->index, hits[i]->index);
+      ASSERT_NEAR(hit->distance, hits[i]->distance, 1e-5f);
+      ASSERT_EQ(surface_of(scene, *hits[i]), on.surface);
+      ASSERT_EQ(on.surface % 4, (std::array{3U, 2U, 0U, 1U}[std::size_t(hit->kind)])) << "its own kind's";
+    }
+    for (const int n : met) EXPECT_GT(n, 50);
+    EXPECT_GT(open, 50);
+    EXPECT_GT(mixed, 50) << "the twin: neighbours meet different things";
+  }
+}
+
 // The solid angle of a triangle (van Oosterom & Strackee 1983).
 double solid_angle(Vec3<double> a, Vec3<double> b, Vec3<double> c) {
   const double la = length(a), lb = length(b), lc = length(c);
