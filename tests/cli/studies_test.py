@@ -72,6 +72,7 @@ class StudyPictures(ProgramTest):
         page = self.page("ours")
         self.assertIn("every scene: holds (2 of 2; 0 are out of reach)", page)
         self.assertRegex(page, r"retro \| path \| cosine \|.*\| reached \|")
+        self.assertIn("elsewhere no loss beyond noise: holds", page)
         self.assertIn("within two standard errors: holds", page)
         self.assertEqual(set(self.rows("ours")), {"one-shot", "exact", "cosine", "proxy", "adaptive-cdf"})
         for name in ("reference", "cosine", "one-shot", "one-shot-error"):
@@ -85,6 +86,7 @@ class StudyPictures(ProgramTest):
         page = self.page("twin")
         self.assertIn("every scene: does not hold (0 of 1", page)
         self.assertRegex(page, r"retro \| path \| proxy \|.*\| missed \|")
+        self.assertIn("elsewhere no loss beyond noise: does not hold", page)
         self.assertIn("within two standard errors: does not hold", page)
         self.assertRegex(page, r"retro \| path \| adaptive-cdf \|.*\| yes \|")
 

@@ -38,6 +38,14 @@ struct Undivided final : Scattering {
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     return whole->sample(wo, uv, u);
   }
+  void values(std::span<const View> views, std::span<const Direction> wi,
+              std::span<Value> out) const override {
+    whole->values(views, wi, out);
+  }
+  void samples(std::span<const View> views, std::span<PathBits* const> u,
+               std::span<std::optional<Scattered>> out) const override {
+    whole->samples(views, u, out);
+  }
   std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
     return whole->sample_adjoint(wi, uv, u);
   }

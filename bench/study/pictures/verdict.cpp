@@ -87,6 +87,8 @@ Estimate ratio_of_time(const Cells& rival, const Cells& ours) {
   return ratio(rival, ours, [](const Cell& c) { return c.equal.seconds; });
 }
 
+bool is_demanded(const Against& a) { return a.rival == "cosine" || a.rival == "proxy"; }
+
 bool is_loss(const Estimate& ratio) { return ratio.value + noise_of(ratio) < 1; }
 
 Verdict judge(const Results& results, const std::vector<std::string>& methods, const std::string& ours) {
@@ -114,10 +116,11 @@ Verdict judge(const Results& results, const std::vector<std::string>& methods, c
   }
   v.best_in_mean = !v.means.empty();
   for (const Mean& m : v.means) v.best_in_mean = v.best_in_mean && !is_loss(m.one_shot);
-  v.half_everywhere = !v.against.empty();
+  v.half_everywhere = v.half_within_reach = !v.against.empty();
   for (const Against& a : v.against) {
-    if (a.rival == "cosine" || a.rival == "proxy")
-      v.half_everywhere = v.half_everywhere && a.one_shot.value >= 2;
+    if (!is_demanded(a)) continue;
+    v.half_everywhere = v.half_everywhere && a.half == Half::reached;
+    v.half_within_reach = v.half_within_reach && a.half != Half::missed && !is_loss(a.one_shot);
   }
   return v;
 }

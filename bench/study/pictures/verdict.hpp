@@ -31,6 +31,8 @@ struct Against {
                      // its own that costs no more than the rival
   Half half = Half::missed;
 };
+// Half of its error was asked for.
+bool is_demanded(const Against& a);
 // At least two standard errors below 1.
 bool is_loss(const Estimate& ratio);
 
@@ -48,6 +50,8 @@ struct Verdict {
   // What was demanded: half of the cosine lobe's and of the fitted proxy's in every scene, and in geometric
   // mean no worse than any general sampler.
   bool half_everywhere = false, best_in_mean = false;
+  // And what decision 0022 demands: half within anyone's reach, elsewhere no loss.
+  bool half_within_reach = false;
 };
 Verdict judge(const Results& results, const std::vector<std::string>& methods, const std::string& ours);
 
