@@ -18,12 +18,11 @@ namespace {
 
 constexpr std::size_t stream_length = 64;  // of the rays that Embree gets at once
 
-RTCRay ray_from(const Ray& r) {
-  RTCRay ray{};
+// In place: a ray that is put together elsewhere and copied waits for its own stores.
+void put(RTCRay& ray, const Ray& r) {
   ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z, ray.tnear = r.near;
   ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z, ray.tfar = r.far;
-  ray.mask = 0xffffffffU;
-  return ray;
+  ray.time = 0, ray.mask = 0xffffffffU, ray.id = 0, ray.flags = 0;
 }
 
 RTCIntersectContext context_of(bool coherent) {
@@ -80,8 +79,10 @@ bool distance_to(const Scene& scene, unsigned index, RTCRayN* r, unsigned n, uns
 // A place on a flat shape in double precision, as it was met.
 REFLECTREE_INLINE std::optional<Hit> hit_of(const Scene& scene, const Ray& ray, const RTCRayHit& r) {
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  Hit hit{Hit::Kind(r.hit.geomID), r.hit.primID, r.ray.tfar, double(r.hit.u), double(r.hit.v)};
-  if (hit.kind == Hit::Kind::rectangle || hit.kind == Hit::Kind::disk) {
+  Hit hit{Hit::Kind(r.hit.geomID), r.hit.primID, r.ray.tfar, 0, 0};
+  if (hit.kind == Hit::Kind::triangle) {
+    hit.u = double(r.hit.u), hit.v = double(r.hit.v);
+  } else if (hit.kind != Hit::Kind::sphere) {
     const auto [distance, x, y] = crossing(flat(scene, hit.kind, hit.index), ray.origin, ray.direction);
     hit.distance = float(distance), hit.u = x, hit.v = y;
   }
@@ -190,7 +191,8 @@ EmbreeScene::EmbreeScene(const Scene& scene) : shapes_(scene) {
 
 std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   const InPhase traversing(Phase::traversal);
-  RTCRayHit query{ray_from(ray), {}};
+  RTCRayHit query;
+  put(query.ray, ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context = context_of(false);
   rtcIntersect1(static_cast<RTCScene>(scene_.get()), &context, &query);
@@ -199,7 +201,8 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
 
 bool EmbreeScene::occluded(const Ray& ray) const {
   const InPhase traversing(Phase::traversal);
-  RTCRay query = ray_from(ray);
+  RTCRay query;
+  put(query, ray);
   RTCIntersectContext context = context_of(false);
   rtcOccluded1(static_cast<RTCScene>(scene_.get()), &context, &query);
   return query.tfar < 0;
@@ -213,7 +216,7 @@ void EmbreeScene::intersect(std::span<const Ray> rays, bool coherent,
   for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
     const std::size_t n = std::min(stream_length, rays.size() - begin);
     for (std::size_t i = 0; i < n; ++i) {
-      queries[i].ray = ray_from(rays[begin + i]);
+      put(queries[i].ray, rays[begin + i]);
       queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
     }
     rtcIntersect1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
@@ -228,7 +231,7 @@ void EmbreeScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> ou
   std::array<RTCRay, stream_length> queries;
   for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
     const std::size_t n = std::min(stream_length, rays.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) queries[i] = ray_from(rays[begin + i]);
+    for (std::size_t i = 0; i < n; ++i) put(queries[i], rays[begin + i]);
     rtcOccluded1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
                   sizeof queries[0]);
     for (std::size_t i = 0; i < n; ++i) out[begin + i] = queries[i].tfar < 0;
