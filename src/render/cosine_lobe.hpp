@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "reflectree/math/direction.hpp"
+#include "reflectree/math/circle.hpp"
 #include "reflectree/render/path_bits.hpp"
 #include "reflectree/render/scattering.hpp"
 
@@ -13,8 +13,9 @@ namespace reflectree::render {
 inline float cosine_pdf(Direction wi) { return wi.z > 0 ? wi.z / reflectree::pi : 0; }
 
 inline Direction cosine_direction(float u1, float u2) {
-  const float phi = 2 * reflectree::pi * u2, r = std::sqrt(u1);
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u1)};
+  const float r = std::sqrt(u1);
+  const auto [x, y] = on_circle(u2);
+  return {r * x, r * y, std::sqrt(1 - u1)};
 }
 inline Direction cosine_direction(PathBits& u) {
   const float u1 = to_unit_float(u());

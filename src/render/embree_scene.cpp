@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t stream_length = 64;  // of the rays that Embree gets at once
 
-// In place: a ray that is put together elsewhere and copied waits for its own stores.
+// Rays and hits are written in place: what is put together elsewhere and copied waits for its own stores.
 void put(RTCRay& ray, const Ray& r) {
   ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z, ray.tnear = r.near;
   ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z, ray.tfar = r.far;
@@ -77,16 +77,16 @@ bool distance_to(const Scene& scene, unsigned index, RTCRayN* r, unsigned n, uns
 }
 
 // A place on a flat shape in double precision, as it was met.
-REFLECTREE_INLINE std::optional<Hit> hit_of(const Scene& scene, const Ray& ray, const RTCRayHit& r) {
-  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  Hit hit{Hit::Kind(r.hit.geomID), r.hit.primID, r.ray.tfar, 0, 0};
+REFLECTREE_INLINE void put(std::optional<Hit>& out, const Scene& scene, const Ray& ray, const RTCRayHit& r) {
+  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return out.reset();
+  Hit& hit = out.emplace();
+  hit.kind = Hit::Kind(r.hit.geomID), hit.index = r.hit.primID, hit.distance = r.ray.tfar;
   if (hit.kind == Hit::Kind::triangle) {
     hit.u = double(r.hit.u), hit.v = double(r.hit.v);
   } else if (hit.kind != Hit::Kind::sphere) {
     const auto [distance, x, y] = crossing(flat(scene, hit.kind, hit.index), ray.origin, ray.direction);
     hit.distance = float(distance), hit.u = x, hit.v = y;
   }
-  return hit;
 }
 
 // Embree's callbacks, for single rays and packets.
@@ -196,7 +196,9 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context = context_of(false);
   rtcIntersect1(static_cast<RTCScene>(scene_.get()), &context, &query);
-  return hit_of(shapes_, ray, query);
+  std::optional<Hit> hit;
+  put(hit, shapes_, ray, query);
+  return hit;
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const {
@@ -221,7 +223,7 @@ void EmbreeScene::intersect(std::span<const Ray> rays, bool coherent,
     }
     rtcIntersect1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
                    sizeof queries[0]);
-    for (std::size_t i = 0; i < n; ++i) out[begin + i] = hit_of(shapes_, rays[begin + i], queries[i]);
+    for (std::size_t i = 0; i < n; ++i) put(out[begin + i], shapes_, rays[begin + i], queries[i]);
   }
 }
 

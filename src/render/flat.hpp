@@ -2,6 +2,7 @@
 // Rectangles and disks: where rays cross their planes, how large they are, their points.
 #pragma once
 
+#include "reflectree/math/circle.hpp"
 #include "reflectree/render/scene.hpp"
 
 namespace reflectree::render {
@@ -36,8 +37,9 @@ inline Vec2<double> in_rectangle(PathBits& u) {
   return {x, 2 * to_unit_double(u()) - 1};
 }
 inline Vec2<double> in_disk(PathBits& u) {
-  const double r = std::sqrt(to_unit_double(u())), phi = 2 * pi_v<double> * to_unit_double(u());
-  return {r * std::cos(phi), r * std::sin(phi)};
+  const double r = std::sqrt(to_unit_double(u()));
+  const auto [x, y] = on_circle(to_unit_float(u()));
+  return {r * double(x), r * double(y)};
 }
 
 }  // namespace reflectree::render

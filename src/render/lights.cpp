@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "flat.hpp"
+#include "reflectree/math/circle.hpp"
 #include "reflectree/render/profile.hpp"
 
 namespace reflectree::render {
@@ -18,39 +19,47 @@ constexpr float far_away = std::numeric_limits<float>::infinity();
 bool shines(Rgb c) { return c.r + c.g + c.b > 0; }
 
 // 1 - cos of the cone that a sphere fills, seen from outside; sin^2 / (1 + cos) does not cancel. 0 inside.
-double cone_of(const Sphere& s, Point at) {
-  const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
-  const double sin2 = s.radius * s.radius / dot(to, to);
+double cone_of(const Sphere& s, double distance2) {
+  const double sin2 = s.radius * s.radius / distance2;
   return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
 }
+float cone_density(double cone) { return float(1 / (2 * M_PI * cone)); }
 
-REFLECTREE_INLINE std::optional<LightSample> sample_sphere(const Sphere& s, Point at, Rgb radiance,
-                                                           PathBits& u) {
-  const double cone = cone_of(s, at);
+// Distances are in double precision: they cancel at the rim.
+REFLECTREE_INLINE std::optional<LightSample> sample_sphere(const Sphere& s, Point at, float share,
+                                                           Rgb radiance, PathBits& u) {
+  const Vec3<double> to = s.centre - to_double(at);
+  const double d2 = dot(to, to), d = std::sqrt(d2), cone = cone_of(s, d2);
   if (!(cone > 0) || s.inwards) return std::nullopt;
-  const Vec3<double> to = s.centre - Vec3<double>{at.x, at.y, at.z};
-  const double d = length(to), drop = to_unit_double(u()) * cone;
-  const float phi = 2 * pi * to_unit_float(u());
-  const double sin2 = drop * (2 - drop), sine = std::sqrt(sin2), cosine = 1 - drop;
-  const auto frame = frame_from_normal((1 / d) * to);
-  const auto w =
-      to_world(frame, Vec3<double>{sine * double(std::cos(phi)), sine * double(std::sin(phi)), cosine});
-  const double chord = std::sqrt(std::max(0., s.radius * s.radius - d * d * sin2));
-  return LightSample{{float(w.x), float(w.y), float(w.z)},
-                     float(d * cosine - chord),
-                     float(1 / (2 * M_PI * cone)),
-                     false,
+  const double drop = to_unit_double(u()) * cone, sin2 = drop * (2 - drop), cosine = 1 - drop;
+  const auto [x, y] = on_circle(to_unit_float(u()));
+  const float sine = std::sqrt(float(sin2)), over = 1 / float(d);
+  const auto frame = frame_from_normal(over * Direction{float(to.x), float(to.y), float(to.z)});
+  const double chord = std::sqrt(std::max(0., s.radius * s.radius - d2 * sin2));
+  return LightSample{to_world(frame, {sine * x, sine * y, float(cosine)}), float(d * cosine - chord),
+                     share * cone_density(cone), false, radiance};
+}
+
+REFLECTREE_INLINE std::optional<LightSample> sample_area(Point at, Point on, Direction normal, float density,
+                                                         Rgb radiance) {
+  const Direction to = on - at;
+  const float facing = -dot(normal, to);  // the cosine times the distance
+  if (!(facing > 0)) return std::nullopt;
+  const float distance2 = dot(to, to), distance = std::sqrt(distance2);
+  return LightSample{(1 / distance) * to, distance, distance2 * density * (distance / facing), false,
                      radiance};
 }
 
-REFLECTREE_INLINE std::optional<LightSample> sample_area(Point at, Point on, Direction normal, double area,
-                                                         Rgb radiance) {
-  const float distance = length(on - at);
-  if (!(distance > 0)) return std::nullopt;
-  const Direction direction = (1 / distance) * (on - at);
-  const float cosine = -dot(normal, direction);
-  if (!(cosine > 0)) return std::nullopt;
-  return LightSample{direction, distance, distance * distance / (cosine * float(area)), false, radiance};
+// The part whose share of the areas' sums, all but the last, `pick` falls into; without branches, which would
+// be a toss-up.
+std::size_t part_at(const std::vector<double>& cdf, double pick) {
+  const double* first = cdf.data();
+  for (std::size_t n = cdf.size(); n > 1;) {
+    const std::size_t half = n / 2;
+    first += first[half - 1] <= pick ? half : 0;
+    n -= half;
+  }
+  return std::size_t(first - cdf.data());
 }
 
 // A triangle's normal on the side of its corners' shading normals; zero where they do not agree on one.
@@ -73,28 +82,34 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
     if (!shines(scene.surfaces[t.surface].radiance)) continue;
     if (light_of[t.surface] == std::size_t(-1)) {
       light_of[t.surface] = lights_.size();
-      lights_.push_back({Kind::mesh, t.surface, {}, {}, {}});
+      lights_.push_back({Kind::mesh, t.surface, scene.surfaces[t.surface].radiance, 0, {}, {}});
     }
     const Point a = scene.vertices[t.corner[0]].at;
-    area_[t.surface] +=
-        double(length(cross(scene.vertices[t.corner[1]].at - a, scene.vertices[t.corner[2]].at - a))) / 2;
+    const Direction ab = scene.vertices[t.corner[1]].at - a, ac = scene.vertices[t.corner[2]].at - a;
+    area_[t.surface] += double(length(cross(ab, ac))) / 2;
     Light& light = lights_[light_of[t.surface]];
-    light.parts.push_back(i), light.cdf.push_back(area_[t.surface]);
-    light.normals.push_back(facing(scene, t));
+    light.parts.push_back({i, a, ab, ac, facing(scene, t)}), light.cdf.push_back(area_[t.surface]);
   }
-  const auto add = [&](Kind kind, std::size_t i) { lights_.push_back({kind, std::uint32_t(i), {}, {}, {}}); };
-  for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
-    if (shines(scene.surfaces[scene.spheres[i].surface].radiance)) add(Kind::sphere, i);
+  const auto add = [&](Kind kind, std::size_t i, Rgb radiance, double area) {
+    lights_.push_back({kind, std::uint32_t(i), radiance, float(1 / area), {}, {}});
+  };
+  const auto add_shining = [&](Kind kind, const auto& shapes, const auto& area) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const Rgb radiance = scene.surfaces[shapes[i].surface].radiance;
+      if (shines(radiance)) add(kind, i, radiance, area(shapes[i]));
+    }
+  };
+  add_shining(Kind::sphere, scene.spheres, [](const Sphere&) { return 1; });
+  add_shining(Kind::rectangle, scene.rectangles, rectangle_area);
+  add_shining(Kind::disk, scene.disks, disk_area);
+  for (std::size_t i = 0; i < scene.point_lights.size(); ++i) add(Kind::point, i, {}, 1);
+  for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) add(Kind::directional, i, {}, 1);
+  if (scene.environment) add(Kind::environment, 0, {}, 1);
+  share_ = 1 / float(lights_.size());
+  for (Light& light : lights_) {
+    if (light.kind == Kind::mesh) light.density = float(1 / light.cdf.back());
+    light.density *= share_;
   }
-  for (std::size_t i = 0; i < scene.rectangles.size(); ++i) {
-    if (shines(scene.surfaces[scene.rectangles[i].surface].radiance)) add(Kind::rectangle, i);
-  }
-  for (std::size_t i = 0; i < scene.disks.size(); ++i) {
-    if (shines(scene.surfaces[scene.disks[i].surface].radiance)) add(Kind::disk, i);
-  }
-  for (std::size_t i = 0; i < scene.point_lights.size(); ++i) add(Kind::point, i);
-  for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) add(Kind::directional, i);
-  if (scene.environment) add(Kind::environment, 0);
 }
 
 const Lights::Light& Lights::chosen(PathBits& u) const {
@@ -121,8 +136,8 @@ void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
     if (waiting == 0) return;
     scene_.environment->sample(std::span(bits).first(waiting), drawn);
     for (std::size_t k = 0; k < waiting; ++k)
-      out[places[k]] = LightSample{drawn[k].direction, far_away, drawn[k].light.pdf / float(lights_.size()),
-                                   false, drawn[k].light.radiance};
+      out[places[k]] = LightSample{drawn[k].direction, far_away, share_ * drawn[k].light.pdf, false,
+                                   drawn[k].light.radiance};
     waiting = 0;
   };
   for (std::size_t i = 0; i < at.size() && !lights_.empty(); ++i) {
@@ -141,86 +156,76 @@ void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
 void Lights::sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const {
   switch (light.kind) {
     case Light::Kind::mesh: {
-      const double pick = to_unit_double(u()) * light.cdf.back();
-      const auto i =
-          std::size_t(std::upper_bound(light.cdf.begin(), light.cdf.end() - 1, pick) - light.cdf.begin());
-      const double root = std::sqrt(to_unit_double(u())), c = root * to_unit_double(u()), b = root - c;
-      const Rgb radiance = scene_.surfaces[light.index].radiance;
-      if (light.normals[i] == Direction{}) {
-        const Interaction on = interaction_at(scene_, {Hit::Kind::triangle, light.parts[i], 0, b, c}, {}, {});
-        s = sample_area(at, on.at, on.normal(), light.cdf.back(), radiance);
-      } else {
-        const auto& corner = scene_.triangles[light.parts[i]].corner;
-        const auto v = float(b), w = float(c);
-        const Point on = (1 - v - w) * scene_.vertices[corner[0]].at + v * scene_.vertices[corner[1]].at +
-                         w * scene_.vertices[corner[2]].at;
-        s = sample_area(at, on, light.normals[i], light.cdf.back(), radiance);
+      const Part& part = light.parts[part_at(light.cdf, to_unit_double(u()) * light.cdf.back())];
+      const float root = std::sqrt(to_unit_float(u())), c = root * to_unit_float(u()), b = root - c;
+      Direction normal = part.normal;
+      if (normal == Direction{}) {
+        const Hit hit{Hit::Kind::triangle, part.triangle, 0, double(b), double(c)};
+        normal = interaction_at(scene_, hit, {}, {}).normal();
       }
+      s = sample_area(at, part.at + b * part.ab + c * part.ac, normal, light.density, light.radiance);
       break;
     }
-    case Light::Kind::sphere: {
-      const Sphere& sphere = scene_.spheres[light.index];
-      s = sample_sphere(sphere, at, scene_.surfaces[sphere.surface].radiance, u);
+    case Light::Kind::sphere:
+      s = sample_sphere(scene_.spheres[light.index], at, share_, light.radiance, u);
       break;
-    }
     case Light::Kind::rectangle: {
       const Flat& r = scene_.rectangles[light.index];
       const auto [x, y] = in_rectangle(u);
-      s = sample_area(at, point_on(r, x, y), r.normal, rectangle_area(r),
-                      scene_.surfaces[r.surface].radiance);
+      s = sample_area(at, point_on(r, x, y), r.normal, light.density, light.radiance);
       break;
     }
     case Light::Kind::disk: {
       const Flat& d = scene_.disks[light.index];
       const auto [x, y] = in_disk(u);
-      s = sample_area(at, point_on(d, x, y), d.normal, disk_area(d), scene_.surfaces[d.surface].radiance);
+      s = sample_area(at, point_on(d, x, y), d.normal, light.density, light.radiance);
       break;
     }
     case Light::Kind::point: {
       const PointLight& p = scene_.point_lights[light.index];
       const float distance = length(p.at - at);
       if (!(distance > 0)) return;
-      s = LightSample{(1 / distance) * (p.at - at), distance, 1, true,
+      s = LightSample{(1 / distance) * (p.at - at), distance, share_, true,
                       (1 / (distance * distance)) * p.intensity};
       break;
     }
     case Light::Kind::directional: {
       const DirectionalLight& d = scene_.directional_lights[light.index];
-      s = LightSample{-d.direction, far_away, 1, true, d.irradiance};
+      s = LightSample{-d.direction, far_away, share_, true, d.irradiance};
       break;
     }
     case Light::Kind::environment: {
       const auto drawn = scene_.environment->sample(u);
-      s = LightSample{drawn.direction, far_away, drawn.light.pdf, false, drawn.light.radiance};
+      s = LightSample{drawn.direction, far_away, share_ * drawn.light.pdf, false, drawn.light.radiance};
       break;
     }
   }
-  if (s) s->pdf /= float(lights_.size());
 }
 
 float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interaction& on) const {
   if (!shines(scene_.surfaces[on.surface].radiance)) return 0;
-  const float cosine = -dot(on.normal(), direction), share = 1 / float(lights_.size());
+  const float cosine = -dot(on.normal(), direction);
   if (!(cosine > 0)) return 0;
   if (hit.kind == Hit::Kind::sphere) {
     const Sphere& s = scene_.spheres[hit.index];
-    const double cone = cone_of(s, at);
-    return cone > 0 && !s.inwards ? share * float(1 / (2 * M_PI * cone)) : 0;
+    const Vec3<double> to = s.centre - to_double(at);
+    const double cone = cone_of(s, dot(to, to));
+    return cone > 0 && !s.inwards ? share_ * cone_density(cone) : 0;
   }
   const double area = hit.kind == Hit::Kind::rectangle ? rectangle_area(scene_.rectangles[hit.index])
                       : hit.kind == Hit::Kind::disk    ? disk_area(scene_.disks[hit.index])
                                                        : area_[on.surface];
-  return share * hit.distance * hit.distance / (cosine * float(area));
+  return share_ * hit.distance * hit.distance / (cosine * float(area));
 }
 
 Environment::Light Lights::environment(Direction direction) const {
   const auto light = scene_.environment->at(direction);
-  return {light.radiance, light.pdf / float(lights_.size())};
+  return {light.radiance, share_ * light.pdf};
 }
 
 void Lights::environment(std::span<const Direction> directions, std::span<Environment::Light> out) const {
   scene_.environment->at(directions, out);
-  for (Environment::Light& light : out.first(directions.size())) light.pdf /= float(lights_.size());
+  for (Environment::Light& light : out.first(directions.size())) light.pdf *= share_;
 }
 
 }  // namespace reflectree::render

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fresnel.hpp"
+#include "reflectree/math/circle.hpp"
 #include "visible_slope.hpp"
 
 namespace reflectree::render {
@@ -14,8 +15,9 @@ Direction visible_ggx(Direction v, float u1, float u2) {
   const float across = v.x * v.x + v.y * v.y;
   const Direction t1 = across > 0 ? (1 / std::sqrt(across)) * Direction{-v.y, v.x, 0} : Direction{1, 0, 0};
   const Direction t2 = cross(v, t1);
-  const float r = std::sqrt(u1), phi = 2 * pi * u2, p1 = r * std::cos(phi), s = (1 + v.z) / 2;
-  const float p2 = (1 - s) * std::sqrt(max(0.f, 1 - p1 * p1)) + s * r * std::sin(phi);
+  const auto [x, y] = on_circle(u2);
+  const float r = std::sqrt(u1), p1 = r * x, s = (1 + v.z) / 2;
+  const float p2 = (1 - s) * std::sqrt(max(0.f, 1 - p1 * p1)) + s * r * y;
   return p1 * t1 + p2 * t2 + std::sqrt(max(0.f, 1 - p1 * p1 - p2 * p2)) * v;
 }
 
@@ -56,8 +58,9 @@ Direction Microfacets::sample(Direction wo, float u1, float u2) const {
   const bool ggx = roughness_.kind == Roughness::Kind::ggx;
   if (!roughness_.sample_visible) {
     const float tan2 = alpha * alpha * (ggx ? u1 / (1 - u1) : -std::log(1 - u1));
-    const float c = 1 / std::sqrt(1 + tan2), s = std::sqrt(max(0.f, 1 - c * c)), phi = 2 * pi * u2;
-    return {s * std::cos(phi), s * std::sin(phi), c};
+    const float c = 1 / std::sqrt(1 + tan2), s = std::sqrt(max(0.f, 1 - c * c));
+    const auto [x, y] = on_circle(u2);
+    return {s * x, s * y, c};
   }
   const Direction v = normalize(Direction{alpha * wo.x, alpha * wo.y, wo.z});
   if (ggx) {

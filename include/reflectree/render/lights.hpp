@@ -31,18 +31,26 @@ class Lights {
   void environment(std::span<const Direction> directions, std::span<Environment::Light> out) const;
 
  private:
+  // A triangle that shines, at + b ab + c ac; its normal is zero where it turns with the shading normal.
+  struct Part {
+    std::uint32_t triangle;
+    Point at;
+    Direction ab, ac, normal;
+  };
   struct Light {
     enum class Kind { mesh, sphere, rectangle, disk, point, directional, environment } kind;
-    std::uint32_t index;               // among its kind; of a mesh, its surface
-    std::vector<std::uint32_t> parts;  // triangles
-    std::vector<double> cdf;           // of their areas
-    std::vector<Direction> normals;    // theirs; zero where it turns with the shading normal
+    std::uint32_t index;  // among its kind; of a mesh, its surface
+    Rgb radiance;         // of surfaces
+    float density;        // of their points, per area, times share_
+    std::vector<Part> parts;
+    std::vector<double> cdf;  // of their areas
   };
   const Light& chosen(PathBits& u) const;
   void sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const;
 
   const Scene& scene_;
   std::vector<Light> lights_;
+  float share_ = 0;           // of each light
   std::vector<double> area_;  // of a surface's triangles, where they shine
 };
 
