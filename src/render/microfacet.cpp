@@ -5,6 +5,7 @@
 
 #include "fresnel.hpp"
 #include "reflectree/math/circle.hpp"
+#include "reflectree/math/exponential.hpp"
 #include "visible_slope.hpp"
 
 namespace reflectree::render {
@@ -32,21 +33,22 @@ float Microfacets::d(Direction wh) const {
   const float a2 = roughness_.alpha * roughness_.alpha, c2 = wh.z * wh.z;
   const float tan2 = (wh.x * wh.x + wh.y * wh.y) / c2;
   if (roughness_.kind == Roughness::Kind::beckmann) {
-    return tan2 > 80 * a2 ? 0 : std::exp(-tan2 / a2) / (pi * a2 * c2 * c2);  // spares exp the underflow
+    return tan2 > 80 * a2 ? 0
+                          : exp_of_negative(-tan2 / a2) / (pi * a2 * c2 * c2);  // spares exp the underflow
   }
   return 1 / (pi * a2 * c2 * c2 * (1 + tan2 / a2) * (1 + tan2 / a2));
 }
 
 float Microfacets::g1(Direction w) const {
   if (!(w.z > 0)) return 0;
-  const float tangent = std::sqrt(w.x * w.x + w.y * w.y) / w.z;
+  const float alpha = roughness_.alpha, across2 = w.x * w.x + w.y * w.y;
   if (roughness_.kind == Roughness::Kind::ggx) {
-    return 2 / (1 + std::sqrt(1 + roughness_.alpha * roughness_.alpha * tangent * tangent));
+    return 2 / (1 + std::sqrt(1 + alpha * alpha * across2 / (w.z * w.z)));
   }
-  if (!(tangent > 1e-7f)) return 1;
-  const float a = 1 / (roughness_.alpha * tangent);
-  // 2 / (1 + erf a + exp(-a^2) / (a sqrt pi))
-  return a > 5 ? 1 : 2 / (2 + std::exp(-a * a) * (inverse_root_pi / a - scaled_erfc(a)));
+  // 2 / (1 + erf a + exp(-a^2) / (a sqrt pi)) of a = over / under; 1 where a > 5
+  const float over = w.z, under = alpha * std::sqrt(across2), a = over / under;
+  if (over > 5 * under) return 1;
+  return 2 / (2 + exp_of_negative(-a * a) * (inverse_root_pi * (under / over) - scaled_erfc(over, under)));
 }
 
 float Microfacets::pdf(Direction wo, Direction wh, float d, float g1_o) const {
@@ -62,12 +64,12 @@ Direction Microfacets::sample(Direction wo, float u1, float u2) const {
     const auto [x, y] = on_circle(u2);
     return {s * x, s * y, c};
   }
-  const Direction v = normalize(Direction{alpha * wo.x, alpha * wo.y, wo.z});
+  const Direction v{alpha * wo.x, alpha * wo.y, wo.z};
   if (ggx) {
-    const Direction h = visible_ggx(v, u1, u2);
+    const Direction h = visible_ggx(normalize(v), u1, u2);
     return normalize(Direction{alpha * h.x, alpha * h.y, max(1e-9f, h.z)});
   }
-  const float sine = std::sqrt(max(0.f, 1 - v.z * v.z));
+  const float sine = std::sqrt(v.x * v.x + v.y * v.y);
   const float along = visible_slope(v.z, sine, u1);
   const float across = inverse_erf(2 * u2 - 1);  // a Gaussian of variance 1/2
   const float c = sine > 0 ? v.x / sine : 1, s = sine > 0 ? v.y / sine : 0;

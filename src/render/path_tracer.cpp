@@ -143,15 +143,17 @@ void PathTracer::light(Wave& wave, int depth) const {
                         std::span(wave.values).subspan(begin, count));
     });
   }
-  wave.shadow_rays.clear(), wave.expected.clear();
+  wave.shadow_rays.resize(n), wave.expected.resize(n);
+  std::size_t shadows = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const auto& light = wave.lights[i];
     if (!light || !competes(*light, wave.vertices[i].scattering())) continue;
-    const Lit lit = world_.unshadowed(wave.points[i], *light, wave.values[i], technique_);
-    if (lit.radiance == Rgb{}) continue;
-    wave.shadow_rays.push_back(lit.towards);
-    wave.expected.push_back({wave.met[i].result, wave.met[i].throughput * lit.radiance});
+    const Rgb lit = World::unshadowed(*light, wave.values[i], technique_);
+    if (lit == Rgb{}) continue;
+    wave.shadow_rays[shadows] = world_.shadow_ray(wave.points[i], light->direction, light->distance);
+    wave.expected[shadows++] = {wave.met[i].result, wave.met[i].throughput * lit};
   }
+  wave.shadow_rays.resize(shadows), wave.expected.resize(shadows);
   wave.dark.resize(wave.shadow_rays.size());
   world_.embree.occluded(wave.shadow_rays, wave.dark);
   for (std::size_t i = 0; i < wave.expected.size(); ++i) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reflectree/math/exponential.hpp"
+
 namespace reflectree::render {
 
 // Single precision (Giles 2010, "Approximating the erfinv function", GPU Computing Gems 2, table 5).
@@ -48,17 +50,18 @@ class Slopes {
     for (int i = 0; i < 16; ++i) {
       const float g = gauss(x), error = integral(x, g) - goal, facing = cosine_ - x * sine_;
       (error > 0 ? high : low) = x;
-      const float newton = error / (2 * inverse_root_pi * g * facing);
-      const float next = x - newton / (1 + newton * (x + .5f * sine_ / facing));
+      const float slope = 2 * inverse_root_pi * g * facing;
+      const float next = x - error / (slope + error * (x + .5f * sine_ / facing));
       const bool inside = next >= low && next <= high;
       x = inside ? next : (low + high) / 2;
-      if (inside && std::abs(newton) < .004f) break;  // what is left is about its cube
+      if (inside && std::abs(error) < .004f * slope)
+        break;  // what is left is about the cube of error / slope
     }
     return x;
   }
 
  private:
-  static float gauss(float x) { return std::exp(-x * x); }
+  static float gauss(float x) { return exp_of_negative(-x * x); }
   float integral(float x, float g) const {
     const float outside = g * scaled_erfc(std::abs(x));
     return (x < 0 ? outside : 2 - outside) * cosine_ + inverse_root_pi * g * sine_;

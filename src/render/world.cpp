@@ -9,19 +9,9 @@
 
 namespace reflectree::render {
 
-bool competes(const LightSample& light, const Scattering& scattering) {
-  return light.pdf > 0 && (light.delta || scattering.has_pdf());
-}
-
 namespace {
 float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 }  // namespace
-
-float heuristic(Technique technique, float own, float other) {
-  if (technique != Technique::power) return own / (own + other);
-  const float ratio = other / own;
-  return 1 / (1 + ratio * ratio);
-}
 
 PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
     : on(interaction_at(scene, hit, origin, direction)),
@@ -65,31 +55,23 @@ World::World(const Scene& s) : scene(s), embree(s), lights(s) {
   }
 }
 
-float World::near(Point at) const { return 5e-5f * std::max(largest(at), .01f * extent); }
-
-Ray World::shadow_ray(Point at, Direction direction, float distance) const {
-  const float start = near(at);
-  return {at, direction, start, std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start};
-}
-
 bool World::sees(Point at, Direction direction, float distance) const {
   return !embree.occluded(shadow_ray(at, direction, distance));
 }
 
-Lit World::unshadowed(Point at, const LightSample& light, const Scattering::Value& value,
-                      Technique technique) const {
+Rgb World::unshadowed(const LightSample& light, const Scattering::Value& value, Technique technique) {
   const Rgb arriving = value.f_cos * light.radiance;
   if (arriving == Rgb{}) return {};
   const bool alone = light.delta || technique == Technique::light;
   const float share = alone ? 1 : heuristic(technique, light.pdf, value.pdf);
-  return {(share / light.pdf) * arriving, shadow_ray(at, light.direction, light.distance)};
+  return (share / light.pdf) * arriving;
 }
 
 Rgb World::direct(const PathVertex& at, Technique technique, PathBits& u) const {
   const auto light = lights.sample(at.on.at, u);
   if (!light || !competes(*light, at.scattering())) return {};
-  const Lit lit = unshadowed(at.on.at, *light, at.value(to_local(at.frame, light->direction)), technique);
-  return lit.radiance == Rgb{} || embree.occluded(lit.towards) ? Rgb{} : lit.radiance;
+  const Rgb lit = unshadowed(*light, at.value(to_local(at.frame, light->direction)), technique);
+  return lit != Rgb{} && sees(at.on.at, light->direction, light->distance) ? lit : Rgb{};
 }
 
 }  // namespace reflectree::render

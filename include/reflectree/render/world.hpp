@@ -17,10 +17,16 @@ enum class Technique {
 
 // Whether next-event estimation may count a sample: where a surface's directions have no density, they are
 // left to find what they can, all but points and directions.
-bool competes(const LightSample& light, const Scattering& scattering);
+inline bool competes(const LightSample& light, const Scattering& scattering) {
+  return light.pdf > 0 && (light.delta || scattering.has_pdf());
+}
 
 // Of a technique with density `own` > 0 against the one with `other`.
-float heuristic(Technique technique, float own, float other);
+inline float heuristic(Technique technique, float own, float other) {
+  if (technique != Technique::power) return own / (own + other);
+  const float ratio = other / own;
+  return 1 / (1 + ratio * ratio);
+}
 
 // A place where a path meets a surface; `wo` goes back along it, in the shading frame.
 struct PathVertex {
@@ -40,23 +46,20 @@ struct PathVertex {
   Rgb emitted() const { return wo.z > 0 ? surface->radiance : Rgb{}; }
 };
 
-// Light that reaches a vertex, reflected back, if nothing stands in the ray's way.
-struct Lit {
-  Rgb radiance;
-  Ray towards;
-};
-
 struct World {
   explicit World(const Scene& scene);  // holds a reference
 
   // How far from a surface rays start: well above the rounding of its coordinates.
-  float near(Point at) const;
+  float near(Point at) const { return 5e-5f * max(max(max(abs(at.x), abs(at.y)), abs(at.z)), .01f * extent); }
   // Stops short of what it leads to.
-  Ray shadow_ray(Point at, Direction direction, float distance) const;
+  Ray shadow_ray(Point at, Direction direction, float distance) const {
+    const float start = near(at);
+    return {at, direction, start, std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start};
+  }
   bool sees(Point at, Direction direction, float distance) const;
-  // Next-event estimation: a point on a light, weighed against the directions that the surface would draw.
-  Lit unshadowed(Point at, const LightSample& light, const Scattering::Value& value,
-                 Technique technique) const;
+  // Next-event estimation: what a light sends to a vertex, reflected back, if nothing stands in between,
+  // weighed against the directions that the surface would draw.
+  static Rgb unshadowed(const LightSample& light, const Scattering::Value& value, Technique technique);
   Rgb direct(const PathVertex& at, Technique technique, PathBits& u) const;
 
   const Scene& scene;
