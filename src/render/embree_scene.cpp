@@ -16,13 +16,30 @@ namespace reflectree::render {
 
 namespace {
 
-constexpr std::size_t stream_length = 64;  // of the rays that Embree gets at once
+constexpr std::size_t lanes = 8;           // rays that Embree traces at once
+constexpr std::size_t stream_length = 64;  // rays of neighbours, that Embree sorts into packets itself
 
 // Rays and hits are written in place: what is put together elsewhere and copied waits for its own stores.
 void put(RTCRay& ray, const Ray& r) {
   ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z, ray.tnear = r.near;
   ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z, ray.tfar = r.far;
   ray.time = 0, ray.mask = 0xffffffffU, ray.id = 0, ray.flags = 0;
+}
+
+struct Lanes {
+  alignas(32) int mask[lanes];  // -1: in use
+};
+Lanes put(RTCRay8& packet, std::span<const Ray> rays) {
+  Lanes used;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    used.mask[i] = i < rays.size() ? -1 : 0;
+    const Ray& r = rays[std::min(i, rays.size() - 1)];
+    packet.org_x[i] = r.origin.x, packet.org_y[i] = r.origin.y, packet.org_z[i] = r.origin.z;
+    packet.dir_x[i] = r.direction.x, packet.dir_y[i] = r.direction.y, packet.dir_z[i] = r.direction.z;
+    packet.tnear[i] = r.near, packet.tfar[i] = r.far;
+    packet.time[i] = 0, packet.mask[i] = 0xffffffffU, packet.id[i] = 0, packet.flags[i] = 0;
+  }
+  return used;
 }
 
 RTCIntersectContext context_of(bool coherent) {
@@ -44,7 +61,7 @@ T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_
 // perpendicular plus and minus the half chord (Haines et al. 2019, Ray Tracing Gems, 7), free of
 // cancellation.
 bool sphere_distance(const Sphere& s, Point o, Direction d, float near, float far, float& distance) {
-  const Vec3<double> from = Vec3<double>{o.x, o.y, o.z} - s.centre, along{d.x, d.y, d.z};
+  const Vec3<double> from = to_double(o) - s.centre, along = to_double(d);
   const double over = 1 / dot(along, along), b = -dot(from, along) * over;
   const Vec3<double> foot = from + b * along;
   const double rest = s.radius * s.radius - dot(foot, foot);
@@ -77,15 +94,16 @@ bool distance_to(const Scene& scene, unsigned index, RTCRayN* r, unsigned n, uns
 }
 
 // A place on a flat shape in double precision, as it was met.
-REFLECTREE_INLINE void put(std::optional<Hit>& out, const Scene& scene, const Ray& ray, const RTCRayHit& r) {
-  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return out.reset();
+REFLECTREE_INLINE void put(std::optional<Hit>& out, const Scene& scene, const Ray& ray, unsigned geometry,
+                           unsigned primitive, float distance, float u, float v) {
+  if (geometry == RTC_INVALID_GEOMETRY_ID) return out.reset();
   Hit& hit = out.emplace();
-  hit.kind = Hit::Kind(r.hit.geomID), hit.index = r.hit.primID, hit.distance = r.ray.tfar;
+  hit.kind = Hit::Kind(geometry), hit.index = primitive, hit.distance = distance;
   if (hit.kind == Hit::Kind::triangle) {
-    hit.u = double(r.hit.u), hit.v = double(r.hit.v);
+    hit.u = double(u), hit.v = double(v);
   } else if (hit.kind != Hit::Kind::sphere) {
-    const auto [distance, x, y] = crossing(flat(scene, hit.kind, hit.index), ray.origin, ray.direction);
-    hit.distance = float(distance), hit.u = x, hit.v = y;
+    const auto [t, x, y] = crossing(flat(scene, hit.kind, hit.index), ray.origin, ray.direction);
+    hit.distance = float(t), hit.u = x, hit.v = y;
   }
 }
 
@@ -197,7 +215,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   RTCIntersectContext context = context_of(false);
   rtcIntersect1(static_cast<RTCScene>(scene_.get()), &context, &query);
   std::optional<Hit> hit;
-  put(hit, shapes_, ray, query);
+  put(hit, shapes_, ray, query.hit.geomID, query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
   return hit;
 }
 
@@ -214,16 +232,33 @@ void EmbreeScene::intersect(std::span<const Ray> rays, bool coherent,
                             std::span<std::optional<Hit>> out) const {
   const InPhase traversing(Phase::traversal);
   RTCIntersectContext context = context_of(coherent);
-  std::array<RTCRayHit, stream_length> queries;
-  for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
-    const std::size_t n = std::min(stream_length, rays.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      put(queries[i].ray, rays[begin + i]);
-      queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (coherent) {
+    std::array<RTCRayHit, stream_length> queries;
+    for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
+      const std::span<const Ray> some = rays.subspan(begin, std::min(stream_length, rays.size() - begin));
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        put(queries[i].ray, some[i]);
+        queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      }
+      rtcIntersect1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(some.size()),
+                     sizeof queries[0]);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const RTCRayHit& q = queries[i];
+        put(out[begin + i], shapes_, some[i], q.hit.geomID, q.hit.primID, q.ray.tfar, q.hit.u, q.hit.v);
+      }
     }
-    rtcIntersect1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
-                   sizeof queries[0]);
-    for (std::size_t i = 0; i < n; ++i) put(out[begin + i], shapes_, rays[begin + i], queries[i]);
+    return;
+  }
+  alignas(32) RTCRayHit8 packet;
+  for (std::size_t begin = 0; begin < rays.size(); begin += lanes) {
+    const std::span<const Ray> some = rays.subspan(begin, std::min(lanes, rays.size() - begin));
+    const Lanes valid = put(packet.ray, some);
+    for (unsigned& id : packet.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect8(valid.mask, static_cast<RTCScene>(scene_.get()), &context, &packet);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      put(out[begin + i], shapes_, some[i], packet.hit.geomID[i], packet.hit.primID[i], packet.ray.tfar[i],
+          packet.hit.u[i], packet.hit.v[i]);
+    }
   }
 }
 
