@@ -17,7 +17,7 @@ namespace reflectree::render {
 namespace {
 
 constexpr std::size_t lanes = 8;           // rays that Embree traces at once
-constexpr std::size_t stream_length = 64;  // rays of neighbours, that Embree sorts into packets itself
+constexpr std::size_t stream_length = 64;  // shadow rays that it gets at once, to form packets itself
 
 // Rays and hits are written in place: what is put together elsewhere and copied waits for its own stores.
 void put(RTCRay& ray, const Ray& r) {
@@ -232,23 +232,6 @@ void EmbreeScene::intersect(std::span<const Ray> rays, bool coherent,
                             std::span<std::optional<Hit>> out) const {
   const InPhase traversing(Phase::traversal);
   RTCIntersectContext context = context_of(coherent);
-  if (coherent) {
-    std::array<RTCRayHit, stream_length> queries;
-    for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
-      const std::span<const Ray> some = rays.subspan(begin, std::min(stream_length, rays.size() - begin));
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        put(queries[i].ray, some[i]);
-        queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      }
-      rtcIntersect1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(some.size()),
-                     sizeof queries[0]);
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        const RTCRayHit& q = queries[i];
-        put(out[begin + i], shapes_, some[i], q.hit.geomID, q.hit.primID, q.ray.tfar, q.hit.u, q.hit.v);
-      }
-    }
-    return;
-  }
   alignas(32) RTCRayHit8 packet;
   for (std::size_t begin = 0; begin < rays.size(); begin += lanes) {
     const std::span<const Ray> some = rays.subspan(begin, std::min(lanes, rays.size() - begin));
