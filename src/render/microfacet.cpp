@@ -30,13 +30,12 @@ Microfacets::Microfacets(Roughness roughness) : roughness_(roughness) {
 
 float Microfacets::d(Direction wh) const {
   if (!(wh.z > 0)) return 0;
-  const float a2 = roughness_.alpha * roughness_.alpha, c2 = wh.z * wh.z;
-  const float tan2 = (wh.x * wh.x + wh.y * wh.y) / c2;
-  if (roughness_.kind == Roughness::Kind::beckmann) {
-    return tan2 > 80 * a2 ? 0
-                          : exp_of_negative(-tan2 / a2) / (pi * a2 * c2 * c2);  // spares exp the underflow
+  const float a2 = roughness_.alpha * roughness_.alpha, c2 = wh.z * wh.z, s2 = wh.x * wh.x + wh.y * wh.y;
+  const float scaled = a2 * c2;
+  if (roughness_.kind == Roughness::Kind::beckmann) {  // exp(-tan^2 / a^2) / (pi a^2 cos^4)
+    return s2 > 80 * scaled ? 0 : exp_of_negative(-s2 / scaled) / (pi * scaled * c2);  // spares the underflow
   }
-  return 1 / (pi * a2 * c2 * c2 * (1 + tan2 / a2) * (1 + tan2 / a2));
+  return a2 / (pi * (scaled + s2) * (scaled + s2));
 }
 
 float Microfacets::g1(Direction w) const {
