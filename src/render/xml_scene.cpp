@@ -83,7 +83,8 @@ class SceneReader {
     xml_.only(n,
               {"fov", "fov_axis", "near_clip", "far_clip", "focus_distance", "to_world", "sampler", "film"});
     const Node film = n.child("film"), sampler = n.child("sampler");
-    if (XmlReader::type(film) != "hdrfilm") xml_.unknown(film ? film : n);
+    if (!film) xml_.fail(n, "a sensor without a film", "add an hdrfilm");
+    if (XmlReader::type(film) != "hdrfilm") xml_.unknown(film);
     if (sampler) {
       const auto points = points_of(XmlReader::type(sampler));
       if (!points) xml_.unknown(sampler);

@@ -179,6 +179,7 @@ TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
        "not finite"},
       {scene_of("<shape type=\"obj\"><string name=\"filename\" value=\"nothing.obj\"/></shape>"),
        "no such file"},
+      {"<scene><sensor type=\"perspective\"/></scene>", "without a film"},
       {"<scene><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"0\"/>"
        "<rfilter type=\"box\"/></film></sensor></scene>",
        "without pixels"},

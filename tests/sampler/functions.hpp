@@ -48,6 +48,18 @@ struct LopsidedAtGrazing {
   }
 };
 
+// (mean over calls - expected) / standard error.
+template <class Call>
+double z_score(double expected, int calls, Call&& call) {
+  double sum = 0, square = 0;
+  for (int i = 0; i < calls; ++i) {
+    const double x = call();
+    sum += x, square += x * x;
+  }
+  const double mean = sum / calls, variance = square / calls - mean * mean;
+  return (mean - expected) / std::sqrt(variance / (calls - 1));
+}
+
 // Runs every loop on `threads` threads in uneven chunks, the last chunks first.
 inline Host uneven_threads(int threads) {
   Host host;

@@ -41,29 +41,23 @@ class OneShotSampler {
   // By alias table, from 128 random bits.
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u) const {
-    Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
-    const detail::ChosenLeaf leaf =
-        detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
-    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-      return std::optional(sample_in(domain, leaf, in, u));
-    });
+    return in_chosen_leaf<DirectionSample<Value>>(
+        wo, u,
+        [&](const Domain& domain, const detail::ChosenLeaf& leaf, const Incidence& in)
+            REFLECTREE_INLINE_LAMBDA { return sample_in(domain, leaf, in, u); });
   }
 
   // The same without f, for who evaluates many together.
   template <RandomBits U>
   std::optional<Proposal> propose(Direction wo, U& u) const {
-    Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
-    const detail::ChosenLeaf leaf =
-        detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
-    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-      bool coin;
-      const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
-      return std::optional(proposal(domain, in, at, domain.half && coin));
-    });
+    return in_chosen_leaf<Proposal>(
+        wo, u,
+        [&](const Domain& domain, const detail::ChosenLeaf& leaf, const Incidence& in)
+            REFLECTREE_INLINE_LAMBDA {
+              bool coin;
+              const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
+              return proposal(domain, in, at, domain.half && coin);
+            });
   }
 
   // out.size() samples in one call, divided among the leaves systematically; returns how many were filled
@@ -139,6 +133,19 @@ class OneShotSampler {
   float pdf_disk(Direction wo, Direction wi) const { return wi.z > 0 ? pdf(wo, wi) / wi.z : 0.f; }
 
  private:
+  // make(domain, leaf, incidence), for a leaf chosen by alias table.
+  template <class Made, RandomBits U, class Make>
+  REFLECTREE_INLINE std::optional<Made> in_chosen_leaf(Direction wo, U& u, const Make& make) const {
+    Incidence in;
+    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    const detail::ChosenLeaf leaf =
+        detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
+    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+      return std::optional<Made>(make(domain, leaf, in));
+    });
+  }
+
   template <RandomBits U>
   REFLECTREE_INLINE DirectionSample<Value> sample_in(const Domain& domain, const detail::ChosenLeaf& leaf,
                                                      const Incidence& in, U& u) const {
