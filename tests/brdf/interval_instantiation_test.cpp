@@ -13,7 +13,6 @@ struct Interval {
   constexpr Interval() = default;
   constexpr explicit Interval(long double x) : lo(double(x)), hi(double(x)) {}
   constexpr Interval(double a, double b) : lo(a), hi(b) {}
-  friend bool operator==(const Interval&, const Interval&) = default;
 };
 Interval hull(double a, double b, double c, double d) {
   return {std::min({a, b, c, d}), std::max({a, b, c, d})};
