@@ -82,7 +82,7 @@ class StudyPictures(ProgramTest):
         self.assertEqual(html.count("data:image/png"), 9)  # 1 converged, 4 samplers with their errors
         self.assertNotIn("http", html.replace("http://www.w3.org", ""))
         # The twin: the cosine lobe in one-shot mode's place.
-        self.study("twin", *self.SMALL, "--samplers", "proxy,adaptive-cdf", "--ours", "cosine")
+        self.study("twin", *self.SMALL, "--samplers", "proxy,adaptive-cdf", "--ours", "cosine", code=1)
         page = self.page("twin")
         self.assertIn("every scene: does not hold (0 of 1", page)
         self.assertRegex(page, r"retro \| path \| proxy \|.*\| missed \|")
@@ -122,6 +122,8 @@ class StudyPictures(ProgramTest):
         self.assertIn("no sampler 'magic'", self.study("x", *self.SMALL, "--samplers", "magic", code=2))
         self.assertIn("no scene 'moon'", self.study("x", "--only", "moon", code=2))
         self.assertIn("--parts", self.study("x", "--parts", "moon", code=2))
+        self.write("taken", b"a file")
+        self.assertIn("taken", self.study("taken", *self.SMALL, code=2))
         self.study("left", "--only", "ball")  # without data
         self.assertIn("Left out", self.page("left"))
 

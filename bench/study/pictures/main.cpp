@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // study_pictures: the same picture by every sampler and by three integrators, at equal samples and at equal
 // time, against a converged one; and exact sampling together with other ways of reducing variance. Writes
-// pictures.md, pictures.html and the pictures into a folder; Ctrl-C writes them of the cells that are done.
+// pictures.md, pictures.html and the pictures into a folder; Ctrl-C writes them of the cells that are done. Exit
+// code 1: the demand of decision 0022 does not hold.
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -82,6 +83,14 @@ void settle(Options& o) {
   o.place.host.cancelled = [] { return interrupt_flag != 0; };
 }
 
+// Exit code 1 where what the study demands does not hold; nothing to compare fails nothing.
+int judged(const Options& o, const Results& results) {
+  const Verdict v = judge(results, methods(), o.plan.ours);
+  if (v.against.empty() || demand_holds(v)) return 0;
+  std::fprintf(stderr, "the demand does not hold: see the verdict of the page\n");
+  return 1;
+}
+
 void write(const Options& o, const Results& results) {
   const Page page = page_of(results, o.plan);
   write_file_atomically(o.place.folder + "/pictures.md", markdown(page));
@@ -90,16 +99,14 @@ void write(const Options& o, const Results& results) {
 
 int run(Options& o) {
   settle(o);
-  std::error_code ignored;
-  fs::create_directories(fs::path(o.place.folder) / "pictures-kept", ignored);
+  const fs::path kept_cells = fs::path(o.place.folder) / "pictures-kept";
+  std::error_code ignored;  // write() names what cannot be made
+  if (!o.resume) fs::remove_all(kept_cells, ignored);
+  fs::create_directories(kept_cells, ignored);
   const std::string key = key_of(o.plan);
   Results results{key, {}, {}};
-  if (o.resume) {
-    if (fs::exists(o.place.cells())) results = kept(o.place.cells(), key);
-  } else {
-    fs::remove_all(fs::path(o.place.folder) / "pictures-kept");
-    fs::create_directories(fs::path(o.place.folder) / "pictures-kept");
-  }
+  if (o.resume && fs::exists(o.place.cells())) results = kept(o.place.cells(), key);
+  write(o, results);  // before the work: the folder may refuse it
   try {
     for (const Setting* setting : o.plan.settings) {
       if (setting->measured && data_folder().empty()) {
@@ -115,13 +122,13 @@ int run(Options& o) {
     return 130;
   }
   write(o, results);
-  return 0;
+  return judged(o, results);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("The study in pictures: the same scenes by every sampler.");
+  CLI::App app("The study in pictures: the same scenes by every sampler. Exit code 1: its demand does not hold.");
   Options o;
   o.place.scenes = "bench/study/scenes";
   o.place.threads = std::max(1U, std::thread::hardware_concurrency());

@@ -91,6 +91,8 @@ bool is_demanded(const Against& a) { return a.rival == "cosine" || a.rival == "p
 
 bool is_loss(const Estimate& ratio) { return ratio.value + noise_of(ratio) < 1; }
 
+bool demand_holds(const Verdict& v) { return v.half_within_reach && (v.best_in_mean || v.means.empty()); }
+
 Verdict judge(const Results& results, const std::vector<std::string>& methods, const std::string& ours) {
   Verdict v;
   v.ours = ours;

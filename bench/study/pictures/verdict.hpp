@@ -53,6 +53,7 @@ struct Verdict {
   // And what decision 0022 demands: half within anyone's reach, elsewhere no loss.
   bool half_within_reach = false;
 };
+bool demand_holds(const Verdict& v);  // decision 0022 and the means; rivals that are not there are not missed
 Verdict judge(const Results& results, const std::vector<std::string>& methods, const std::string& ours);
 
 }  // namespace reflectree::pictures
