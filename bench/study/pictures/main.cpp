@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // study_pictures: the same picture by every sampler and by three integrators, at equal samples and at equal
 // time, against a converged one; and exact sampling together with other ways of reducing variance. Writes
-// pictures.md, pictures.html and the pictures into a folder; Ctrl-C writes them of the cells that are done. Exit
-// code 1: the demand of decision 0022 does not hold.
+// pictures.md, pictures.html and the pictures into a folder; Ctrl-C writes them of the cells that are done.
+// Exit code 1: the demand of decision 0022 does not hold.
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -128,7 +128,8 @@ int run(Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("The study in pictures: the same scenes by every sampler. Exit code 1: its demand does not hold.");
+  CLI::App app(
+      "The study in pictures: the same scenes by every sampler. Exit code 1: its demand does not hold.");
   Options o;
   o.place.scenes = "bench/study/scenes";
   o.place.threads = std::max(1U, std::thread::hardware_concurrency());
