@@ -113,7 +113,7 @@ void show_info(const Context& context, const std::string& command, const Subject
   line("bounds", bounds_text(s));
   line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(*s.packed)) / 1024));
   if (s.file_size) line("on disk", fmt::format("{:.1f} KiB", double(*s.file_size) / 1024));
-  line("albedo of target", fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.1g}", *low,
+  line("albedo of target", fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g}", *low,
                                        *high, d.albedo.albedo.size(), d.albedo.relative_error));
   line("expected trials", fmt::format("{:.4g} in the worst slab", d.report.expected_trials));
   line("overshoot mass",

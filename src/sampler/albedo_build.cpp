@@ -166,8 +166,13 @@ void advance(Integral& integral, double relative_error) {
   integral.regions = std::move(next);
 }
 
+struct Integrals {
+  std::vector<double> values;
+  double error = 0;  // the largest, relative; more than asked for where max_regions do not reach it
+};
+
 // Integrates T over the square for every cosine; all integrals advance together, a round a batch.
-std::vector<double> integrate(const Field& field, const std::vector<float>& cosines, double relative_error,
+Integrals integrate(const Field& field, const std::vector<float>& cosines, double relative_error,
                               const Host& host, std::uint64_t* evaluations) {
   const double area = field.domain.half ? 2 : 4;
   std::vector<Integral> integrals(cosines.size());
@@ -209,8 +214,11 @@ std::vector<double> integrate(const Field& field, const std::vector<float>& cosi
     });
     busy = std::any_of(integrals.begin(), integrals.end(), [](const Integral& i) { return !i.done; });
   }
-  std::vector<double> result;
-  for (const Integral& integral : integrals) result.push_back(integral.value);
+  Integrals result;
+  for (const Integral& integral : integrals) {
+    result.values.push_back(integral.value);
+    if (integral.value > 0) result.error = max(result.error, integral.error / integral.value);
+  }
   return result;
 }
 
@@ -267,8 +275,9 @@ void tabulate(const Panel& panel, const std::array<double, 5>& v, const Factor& 
 
 AlbedoTable build_albedo(const Field& field, float relative_error, const Host& host,
                          std::uint64_t* evaluations) {
-  const double cubature_error = 0.25 * double(relative_error),
-               interpolation_error = 0.15 * double(relative_error);
+  double error = double(relative_error);
+  const auto cubature_error = [&error] { return 0.25 * error; };
+  const auto interpolation_error = [&error] { return 0.15 * error; };
   // Panels of at most 7.5 degrees, and octaves towards the horizon. Where a mirror lobe passes the kinks of a
   // table over the difference angle, a panel begins at every second kink: the one between is met by the
   // middle node, and the parabola shows what it weighs.
@@ -294,23 +303,33 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
   std::vector<Panel> open, closed;
   for (std::size_t i = 0; i + 1 < borders.size(); ++i) open.push_back({borders[i], borders[i + 1]});
   std::map<double, double> nodes;
+  double worst = 0;  // of the integrals, as they estimate it
+  const auto integrate_nodes = [&](const std::vector<double>& thetas) {
+    std::vector<float> cosines;
+    for (const double theta : thetas) cosines.push_back(cosine_of(theta));
+    const Integrals a = integrate(field, cosines, cubature_error(), host, evaluations);
+    for (std::size_t i = 0; i < thetas.size(); ++i) nodes[thetas[i]] = a.values[i] / factor(thetas[i]);
+    worst = max(worst, a.error);
+  };
   const auto values_of = [&](const Panel& panel) {
     std::array<double, 5> v;
     for (int i = 0; i < 5; ++i) v[std::size_t(i)] = nodes[node_of(panel, i)];
     return v;
   };
   for (int level = 0; !open.empty(); ++level) {
-    std::vector<double> fresh;
-    std::vector<float> cosines;
+    std::vector<double> pilots, fresh;
     for (const Panel& panel : open) {
       for (int i = 0; i < 5; ++i) {
         if (!nodes.emplace(node_of(panel, i), 0.).second) continue;
-        fresh.push_back(node_of(panel, i));
-        cosines.push_back(cosine_of(fresh.back()));
+        const bool pilot = level == 0 && (pilots.size() + fresh.size()) % 8 == 0;
+        (pilot ? pilots : fresh).push_back(node_of(panel, i));
       }
     }
-    const std::vector<double> a = integrate(field, cosines, cubature_error, host, evaluations);
-    for (std::size_t i = 0; i < a.size(); ++i) nodes[fresh[i]] = a[i] / factor(fresh[i]);
+    // A function with steps has no albedo to four digits for any decent number of evaluations: where the
+    // first few integrals do not get there, all are content with what is easily had, and the table says so.
+    integrate_nodes(pilots);
+    if (worst > cubature_error()) error = min(8 * worst, 1.);
+    integrate_nodes(fresh);
     std::vector<Panel> next;
     for (const Panel& panel : open) {
       // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less. What the
@@ -323,7 +342,7 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
         parent_miss = max(parent_miss, std::abs(panel.predicted[k / 2] - v[k]));
         scale = max(scale, v[k]);
       }
-      const double allowed = interpolation_error * scale;
+      const double allowed = interpolation_error() * scale;
       if (miss > 4 * allowed && parent_miss > 3 * allowed && level < 10) {
         const double mid = node_of(panel, 2);
         next.push_back({panel.lo, mid, {interpolate(v, 1, 0.5), interpolate(v, 1, 1.5)}});
@@ -336,11 +355,11 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
   }
   std::map<float, double> entries{{1.f, nodes[borders.front()] * factor(borders.front())}};
   for (const Panel& panel : closed) {
-    tabulate(panel, values_of(panel), factor, 0, 4, interpolation_error, 8, entries);
+    tabulate(panel, values_of(panel), factor, 0, 4, interpolation_error(), 8, entries);
   }
   AlbedoTable table;
   for (const auto& [c, a] : entries) table.cos_theta_o.push_back(c), table.albedo.push_back(float(a));
-  table.relative_error = relative_error;
+  table.relative_error = worst > 1.001 * cubature_error() ? float(min(4 * worst, 1.)) : float(error);
   return table;
 }
 

@@ -187,7 +187,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, float alb
   const float budget = rules.goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
   const bool fits = cost <= rules.goal * ideal;
-  const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * albedo_error;
+  const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * min(albedo_error, 0.01f);
   std::vector<std::uint32_t> blind;
   if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
   const bool met = fits && blind.empty();

@@ -124,6 +124,7 @@ void validate(const SamplerData& data) {
   if (a.cos_theta_o.size() < 2 || a.cos_theta_o.size() != a.albedo.size() || a.cos_theta_o.size() > 60000) {
     fail("needs 2 to 60000 nodes, a value each", "albedo table");
   }
+  if (!(a.relative_error >= 0 && a.relative_error <= 1)) fail("the error is not in [0, 1]", "albedo table");
   for (std::size_t i = 0; i < a.albedo.size(); ++i) {
     if (!(std::isfinite(a.albedo[i]) && a.albedo[i] >= 0)) fail("a value is not a number", "albedo table");
     if (i > 0 && !(a.cos_theta_o[i] > a.cos_theta_o[i - 1])) fail("the nodes do not ascend", "albedo table");

@@ -45,6 +45,8 @@ TEST(SamplerData, RefusesEveryKindOfDamage) {
   refused("albedo", [](auto& d) { d.albedo.albedo[1] = std::nanf(""); });
   refused("albedo", [](auto& d) { d.albedo.albedo[1] = -1; });
   refused("albedo short", [](auto& d) { d.albedo.albedo.pop_back(); });
+  refused("albedo error", [](auto& d) { d.albedo.relative_error = std::nanf(""); });
+  refused("albedo error", [](auto& d) { d.albedo.relative_error = 1.01f; });
   refused("albedo empty", [](auto& d) { d.albedo = {}; });
   refused("albedo order", [](auto& d) { std::swap(d.albedo.cos_theta_o[1], d.albedo.cos_theta_o[2]); });
   refused("albedo span", [](auto& d) { d.albedo.cos_theta_o.back() = 0.999f; });
