@@ -173,7 +173,7 @@ struct Integrals {
 
 // Integrates T over the square for every cosine; all integrals advance together, a round a batch.
 Integrals integrate(const Field& field, const std::vector<float>& cosines, double relative_error,
-                              const Host& host, std::uint64_t* evaluations) {
+                    const Host& host, std::uint64_t* evaluations) {
   const double area = field.domain.half ? 2 : 4;
   std::vector<Integral> integrals(cosines.size());
   for (std::size_t i = 0; i < cosines.size(); ++i) {
