@@ -26,13 +26,20 @@ void put(RTCRay& ray, const Ray& r) {
   ray.time = 0, ray.mask = 0xffffffffU, ray.id = 0, ray.flags = 0;
 }
 
+// Embree ends the program on a ray that is no number or comes from beyond 1.8e18; such a ray meets nothing
+// and brings no light.
+bool is_sound(const Ray& r) {
+  const Point &o = r.origin, &d = r.direction;
+  return abs(o.x) + abs(o.y) + abs(o.z) + abs(d.x) + abs(d.y) + abs(d.z) < 1e18f && r.near <= r.far;
+}
+
 struct Lanes {
   alignas(32) int mask[lanes];  // -1: in use
 };
 Lanes put(RTCRay8& packet, std::span<const Ray> rays) {
   Lanes used;
   for (std::size_t i = 0; i < lanes; ++i) {
-    used.mask[i] = i < rays.size() ? -1 : 0;
+    used.mask[i] = i < rays.size() && is_sound(rays[i]) ? -1 : 0;
     const Ray& r = rays[std::min(i, rays.size() - 1)];
     packet.org_x[i] = r.origin.x, packet.org_y[i] = r.origin.y, packet.org_z[i] = r.origin.z;
     packet.dir_x[i] = r.direction.x, packet.dir_y[i] = r.direction.y, packet.dir_z[i] = r.direction.z;
@@ -209,6 +216,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : shapes_(scene) {
 
 std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   const InPhase traversing(Phase::traversal);
+  if (!is_sound(ray)) return std::nullopt;
   RTCRayHit query;
   put(query.ray, ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -221,6 +229,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
 
 bool EmbreeScene::occluded(const Ray& ray) const {
   const InPhase traversing(Phase::traversal);
+  if (!is_sound(ray)) return true;
   RTCRay query;
   put(query, ray);
   RTCIntersectContext context = context_of(false);
@@ -249,12 +258,16 @@ void EmbreeScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> ou
   const InPhase traversing(Phase::traversal);
   RTCIntersectContext context = context_of(false);
   std::array<RTCRay, stream_length> queries;
+  const Ray nothing{{0, 0, 0}, {0, 0, 1}, 1, 0};  // near beyond far: Embree leaves it out
   for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
     const std::size_t n = std::min(stream_length, rays.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) put(queries[i], rays[begin + i]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Ray& ray = rays[begin + i];
+      put(queries[i], is_sound(ray) ? ray : nothing);
+    }
     rtcOccluded1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
                   sizeof queries[0]);
-    for (std::size_t i = 0; i < n; ++i) out[begin + i] = queries[i].tfar < 0;
+    for (std::size_t i = 0; i < n; ++i) out[begin + i] = queries[i].tfar < 0 || !is_sound(rays[begin + i]);
   }
 }
 

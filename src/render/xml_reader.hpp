@@ -10,6 +10,13 @@
 
 namespace reflectree::render {
 
+// Of a place or a transform: Embree takes no ray from farther than 1.8e18, and floats hold no larger areas.
+inline constexpr double largest_coordinate = 1e15;
+inline bool within_reach(Vec3<double> p) {
+  return std::abs(p.x) <= largest_coordinate && std::abs(p.y) <= largest_coordinate &&
+         std::abs(p.z) <= largest_coordinate;
+}
+
 using Node = pugi::xml_node;
 using Names = std::initializer_list<std::string_view>;
 

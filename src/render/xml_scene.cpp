@@ -138,8 +138,9 @@ class SceneReader {
                                      float(xml_.property(n, "scale", 1)), file));
     } else if (type == "point") {
       xml_.only(n, {"position", "intensity", "to_world"});
-      scene_.point_lights.push_back(
-          {apply(m, xml_.point(n, "position", {}), 1), xml_.colour(n, "intensity", white, false)});
+      const auto place = apply_double(m, xml_.point(n, "position", {}), 1);
+      if (!within_reach(place)) xml_.fail(n, "the light is beyond 1e15", "use larger units");
+      scene_.point_lights.push_back({to_float(place), xml_.colour(n, "intensity", white, false)});
     } else if (type == "directional") {
       xml_.only(n, {"direction", "irradiance", "to_world"});
       const Direction d = apply(m, xml_.point(n, "direction", {0, 0, 1}), 0);

@@ -26,7 +26,8 @@ Mesh cube() {
   return all;
 }
 
-bool finite(Point p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool finite(Direction n) { return std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z); }
+bool within_reach(Point p) { return render::within_reach(to_double(p)); }
 
 void add_mesh(const XmlReader& xml, Node n, Mesh mesh, const Matrix& m, bool flip, std::uint32_t surface,
               Scene& scene) {
@@ -34,8 +35,8 @@ void add_mesh(const XmlReader& xml, Node n, Mesh mesh, const Matrix& m, bool fli
   for (Vertex v : mesh.vertices) {
     v.at = apply(m, {v.at.x, v.at.y, v.at.z}, 1);
     v.normal = apply_to_normal(m, flip ? -v.normal : v.normal);
-    if (!finite(v.at) || !finite(v.normal))
-      xml.fail(n, "a corner that does not exist or is not finite", "mend the mesh");
+    if (!within_reach(v.at) || !finite(v.normal))
+      xml.fail(n, "a corner that does not exist, is not finite or beyond 1e15", "mend the mesh");
     scene.vertices.push_back(v);
   }
   for (auto corner : mesh.triangles) {
@@ -59,11 +60,10 @@ void add_sphere(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::u
     xml.fail(n, "the transform makes no sphere of it", "scale it evenly and by more than 0");
   }
   const auto unit = [&](Vec3<double> v) { return to_float((1 / scale) * v); };
-  scene.spheres.push_back({apply_double(m, xml.point(n, "center", {}), 1),
-                           radius * scale,
-                           flip,
-                           {unit(x), unit(y), unit(z)},
-                           surface});
+  const auto centre = apply_double(m, xml.point(n, "center", {}), 1);
+  if (!render::within_reach(centre) || !(radius * scale <= largest_coordinate))
+    xml.fail(n, "the sphere reaches beyond 1e15", "use larger units");
+  scene.spheres.push_back({centre, radius * scale, flip, {unit(x), unit(y), unit(z)}, surface});
 }
 
 void add_flat(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::uint32_t surface,
@@ -73,8 +73,8 @@ void add_flat(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::uin
                   flip ? -normal : normal, surface};
   const double area = rectangle_area(flat);
   for (const double x : {-1., 1.}) {
-    if (!finite(point_on(flat, x, -1)) || !finite(point_on(flat, x, 1)) || !std::isfinite(float(area)))
-      xml.fail(n, "corners that are not finite", "mend the transform");
+    if (!within_reach(point_on(flat, x, -1)) || !within_reach(point_on(flat, x, 1)))
+      xml.fail(n, "corners that are not finite or beyond 1e15", "mend the transform");
   }
   if (area > 0) all.push_back(flat);
 }

@@ -66,6 +66,7 @@ Matrix XmlReader::transform(Node n) const {
   for (const auto& row : all) {
     for (const double v : row) {
       if (!std::isfinite(v)) fail(n, "the transform is not finite", "check axes, up and target");
+      if (std::abs(v) > largest_coordinate) fail(n, "the transform reaches beyond 1e15", "use larger units");
     }
   }
   return all;

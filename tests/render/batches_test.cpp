@@ -63,6 +63,32 @@ TEST(Batches, PacketsOfRaysMeetWhatSingleRaysMeet) {
   }
 }
 
+// Embree itself ends the program on such rays. The last is sound, and shows that its neighbours do not
+// matter.
+TEST(Batches, RaysThatAreNoneMeetNothingAndBringNoLight) {
+  const Scene scene = corner();
+  const EmbreeScene embree(scene);
+  const float nan = std::nanf(""), far = 3e25f;
+  const std::vector<Ray> rays{{{far, -4, 1}, {-1, 0, 0}},
+                              {{0, nan, .8f}, {0, 0, -1}},
+                              {{0, 0, .8f}, {nan, nan, nan}},
+                              {{0, 0, .8f}, {0, 0, -1}, 0, nan},
+                              {{0, 0, .8f}, {0, 0, -1}}};
+  std::vector<std::optional<Hit>> hits(rays.size());
+  std::vector<std::uint8_t> dark(rays.size());
+  embree.occluded(rays, dark);
+  for (const bool coherent : {false, true}) {
+    embree.intersect(rays, coherent, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const bool sound = i + 1 == rays.size();
+      EXPECT_EQ(hits[i].has_value(), sound) << i;
+      EXPECT_EQ(embree.intersect(rays[i]).has_value(), sound) << i;
+      EXPECT_NE(dark[i], 0) << i;
+      EXPECT_TRUE(embree.occluded(rays[i])) << i;
+    }
+  }
+}
+
 Image sky_picture() {
   Image p = make_image(16, 9, {"R", "G", "B"});
   Pcg32 u(2);

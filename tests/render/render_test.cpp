@@ -176,7 +176,15 @@ TEST(Render, BadScenesNameWhatIsWrongAndWhere) {
        "finite"},
       {scene_of("<shape type=\"rectangle\"><transform name=\"to_world\"><scale "
                 "value=\"1e200\"/></transform></shape>"),
-       "not finite"},
+       "beyond 1e15"},
+      {scene_of("<shape type=\"sphere\"><float name=\"radius\" value=\"1e16\"/></shape>"), "beyond 1e15"},
+      {scene_of("<shape type=\"sphere\"><point name=\"center\" x=\"1e16\" y=\"0\" z=\"0\"/></shape>"),
+       "beyond 1e15"},
+      {scene_of("<emitter type=\"point\"><point name=\"position\" value=\"0,-1e25,0\"/></emitter>"),
+       "beyond 1e15"},
+      {"<scene><sensor type=\"perspective\"><transform name=\"to_world\"><lookat origin=\"3e25,-4,1\" "
+       "target=\"0,0,0\" up=\"0,0,1\"/></transform><film type=\"hdrfilm\"/></sensor></scene>",
+       "beyond 1e15"},
       {scene_of("<shape type=\"obj\"><string name=\"filename\" value=\"nothing.obj\"/></shape>"),
        "no such file"},
       {"<scene><sensor type=\"perspective\"/></scene>", "without a film"},
