@@ -30,7 +30,8 @@ void put(RTCRay& ray, const Ray& r) {
 // and brings no light.
 bool is_sound(const Ray& r) {
   const Point &o = r.origin, &d = r.direction;
-  return abs(o.x) + abs(o.y) + abs(o.z) + abs(d.x) + abs(d.y) + abs(d.z) < 1e18f && r.near <= r.far;
+  const float size = abs(o.x) + abs(o.y) + abs(o.z) + abs(d.x) + abs(d.y) + abs(d.z);
+  return size < 1e18f && !std::isnan(r.near) && !std::isnan(r.far);
 }
 
 struct Lanes {
