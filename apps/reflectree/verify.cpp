@@ -55,6 +55,7 @@ void check_all_viewers(const Subject& subject, const Options& o, const Suspects&
   furnace.grazing_tolerance = 10 * furnace.tolerance;
   const auto table = [&](Direction wo) { return double(subject.sampler.exact.albedo(wo)); };
   verdicts.add(check_albedo_table(table, s.f, furnace, host));
+  verdicts.inform("albedo_stated_error", furnace.tolerance);
   const auto once = [&](Direction wo, Pcg32& u) {
     const auto drawn = subject.sampler.exact.sample_once(wo, u);
     return drawn ? double(subject.data.target(drawn->weight)) : 0.;

@@ -262,10 +262,8 @@ void EmbreeScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> ou
   const Ray nothing{{0, 0, 0}, {0, 0, 1}, 1, 0};  // near beyond far: Embree leaves it out
   for (std::size_t begin = 0; begin < rays.size(); begin += stream_length) {
     const std::size_t n = std::min(stream_length, rays.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Ray& ray = rays[begin + i];
-      put(queries[i], is_sound(ray) ? ray : nothing);
-    }
+    for (std::size_t i = 0; i < n; ++i)
+      put(queries[i], is_sound(rays[begin + i]) ? rays[begin + i] : nothing);
     rtcOccluded1M(static_cast<RTCScene>(scene_.get()), &context, queries.data(), unsigned(n),
                   sizeof queries[0]);
     for (std::size_t i = 0; i < n; ++i) out[begin + i] = queries[i].tfar < 0 || !is_sound(rays[begin + i]);

@@ -187,6 +187,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, float alb
   const float budget = rules.goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
   const bool fits = cost <= rules.goal * ideal;
+  // A stated error is far above the true one: a large one must not hide a lobe that no grid has seen.
   const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * min(albedo_error, 0.01f);
   std::vector<std::uint32_t> blind;
   if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);

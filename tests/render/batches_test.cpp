@@ -89,6 +89,23 @@ TEST(Batches, RaysThatAreNoneMeetNothingAndBringNoLight) {
   }
 }
 
+// Between points that touch: nothing is there to be met, and nothing blocks.
+TEST(Batches, RaysThatEndBeforeTheyBeginAreFree) {
+  const Scene scene = corner();
+  const EmbreeScene embree(scene);
+  const std::vector<Ray> rays{{{0, 0, .8f}, {0, 0, -1}, 2, 1}, {{0, 0, .8f}, {0, 0, -1}}};
+  std::vector<std::optional<Hit>> hits(rays.size());
+  std::vector<std::uint8_t> dark(rays.size());
+  embree.occluded(rays, dark);
+  embree.intersect(rays, false, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(hits[i].has_value(), i == 1);
+    EXPECT_EQ(embree.intersect(rays[i]).has_value(), i == 1);
+    EXPECT_EQ(dark[i] != 0, i == 1);
+    EXPECT_EQ(embree.occluded(rays[i]), i == 1);
+  }
+}
+
 Image sky_picture() {
   Image p = make_image(16, 9, {"R", "G", "B"});
   Pcg32 u(2);
