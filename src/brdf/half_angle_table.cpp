@@ -64,6 +64,7 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
 
 BrdfTraits HalfAngleTable::traits() const {
   BrdfTraits traits;
+  traits.isotropic_by_formula = true;
   traits.name = name;
   for (int d = 0; d < n_d && lookup == TableLookup::linear; ++d) {
     traits.theta_d_knots.push_back(0.5f * pi * (float(d) + 0.5f) / float(n_d));

@@ -91,9 +91,17 @@ BrdfTraits combined(const BrdfTraits& a, const BrdfTraits& b) {
   sum.name = a.name + " + " + b.name;
   sum.channels = std::max(a.channels, b.channels);
   sum.isotropic = a.isotropic && b.isotropic;
+  sum.isotropic_by_formula = a.isotropic_by_formula && b.isotropic_by_formula;
   sum.concurrent = a.concurrent && b.concurrent;
   sum.theta_o_knots = united(a.theta_o_knots, b.theta_o_knots);
   sum.theta_d_knots = united(a.theta_d_knots, b.theta_d_knots);
+  if (a.sharp || b.sharp) {
+    sum.sharp = [a = a.sharp, b = b.sharp](Direction wo) {
+      std::vector<SharpLobe> lobes = a ? a(wo) : std::vector<SharpLobe>();
+      for (const SharpLobe& lobe : b ? b(wo) : std::vector<SharpLobe>()) lobes.push_back(lobe);
+      return lobes;
+    };
+  }
   return sum;
 }
 

@@ -48,6 +48,7 @@ Rgb NeuralBrdf::operator()(const ShadingGeometry<float>& g) const {
 
 BrdfTraits NeuralBrdf::traits() const {
   BrdfTraits traits;
+  traits.isotropic_by_formula = true;
   traits.name = name_;
   return traits;
 }

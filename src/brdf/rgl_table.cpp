@@ -215,6 +215,7 @@ Rgb RglTable::value(const Known& of_wo, float u, const InColour& at, float cos_t
 
 BrdfTraits RglTable::traits() const {
   BrdfTraits traits;
+  traits.isotropic_by_formula = true;
   traits.name = name;
   traits.theta_o_knots = theta_o_;
   // 1 / sigma is piecewise linear in u, in steps of less than a degree.

@@ -141,7 +141,7 @@ void read_target(ByteReader& in, SamplerData& data) {
 }
 
 void read_domain(ByteReader& in, SamplerData& data) {
-  data.domain.kind = read_kind(in, DomainKind::stretched, "domain");
+  data.domain.kind = read_kind(in, DomainKind::normal_vector, "domain");
   data.domain.half = read_kind(in, std::uint8_t(1), "symmetry") != 0;
   data.domain.exponent = read_float(in);
 }

@@ -131,7 +131,8 @@ struct Swapped {
   BrdfTraits traits() const {
     BrdfTraits t;
     t.name = "adjoint of " + f.traits().name;
-    t.channels = f.channels(), t.isotropic = f.traits().isotropic, t.concurrent = f.traits().concurrent;
+    t.channels = f.channels(), t.concurrent = f.traits().concurrent;
+    t.isotropic = f.traits().isotropic, t.isotropic_by_formula = f.traits().isotropic_by_formula;
     return t;
   }
 };

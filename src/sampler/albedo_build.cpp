@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 
+#include "albedo_integrals.hpp"
+#include "reflectree/math/random.hpp"
 #include "reflectree/sampler/albedo.hpp"
 
 namespace reflectree {
@@ -29,204 +32,15 @@ namespace detail {
 
 namespace {
 
-// Genz and Malik 1980, degree 7 with an embedded degree 5, in two dimensions: 17 points.
-constexpr std::size_t rule_size = 17;
-const float l2 = std::sqrt(9.f / 70), l3 = std::sqrt(0.9f), l5 = std::sqrt(9.f / 19);
-const std::array<Vec2<float>, rule_size> rule_points{{{0, 0},
-                                                      {-l2, 0},
-                                                      {l2, 0},
-                                                      {0, -l2},
-                                                      {0, l2},
-                                                      {-l3, 0},
-                                                      {l3, 0},
-                                                      {0, -l3},
-                                                      {0, l3},
-                                                      {-l3, -l3},
-                                                      {l3, -l3},
-                                                      {-l3, l3},
-                                                      {l3, l3},
-                                                      {-l5, -l5},
-                                                      {l5, -l5},
-                                                      {-l5, l5},
-                                                      {l5, l5}}};
-
-struct Region {
-  double x, y, hx, hy;  // centre and half widths in square coordinates
-  double value = 0, error = 0;
-  bool split_x = true;
-};
-
-void apply_rule(Region& r, const FieldValue* v, double area) {
-  const auto sum4 = [v](int i) { return double(v[i].mean) + v[i + 1].mean + v[i + 2].mean + v[i + 3].mean; };
-  const double f0 = v[0].mean, s2 = sum4(1), s3 = sum4(5), s4 = sum4(9), s5 = sum4(13);
-  const double share = 4 * r.hx * r.hy / area;
-  const double degree7 = (-3816 * f0 + 2940 * s2 + 1020 * s3 + 200 * s4 + 6859. / 4 * s5) / 19683;
-  const double degree5 = (-1942 * f0 + 735 * s2 + 65 * s3 + 50 * s4) / 1458;
-  r.value = share * degree7;
-  r.error = share * std::abs(degree7 - degree5);
-  // Fourth differences along each axis choose the split.
-  const double ratio = (9. / 70) / 0.9;
-  const auto difference = [&](int i, int j) {
-    return std::abs(double(v[i].mean) + v[i + 1].mean - 2 * f0 -
-                    ratio * (double(v[j].mean) + v[j + 1].mean - 2 * f0));
-  };
-  const double dx = difference(1, 5), dy = difference(3, 7);
-  r.split_x = dx > dy || (dx == dy && r.hx >= r.hy);
-}
-
-// One integral, advanced in rounds: the regions that carry most of the error are halved.
-struct Integral {
-  float cos_theta_o = 0;
-  std::vector<Region> regions;
-  std::size_t fresh = 0;  // regions from here on await their values
-  double value = 0, error = 0;
-  bool done = false;
-};
-
 constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr std::size_t max_regions = 40000;
-
-void start(Integral& integral, const Domain& domain) {
-  const int nx = 8, ny = domain.half ? 4 : 8;
-  const double y0 = domain.half ? 0 : -1, hx = 1. / nx, hy = (1 - y0) / (2 * ny);
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      integral.regions.push_back({-1 + (2 * i + 1) * hx, y0 + (2 * j + 1) * hy, hx, hy});
-    }
-  }
-  // Close in on the landmarks and on the pole, so that no needle there falls between the points.
-  const auto close_in = [&](Vec2<float> p, double narrow_x, double narrow_y) {
-    for (std::size_t i = 0; i < integral.regions.size(); ++i) {
-      Region& r = integral.regions[i];
-      const bool inside = std::abs(double(p.x) - r.x) <= r.hx && std::abs(double(p.y) - r.y) <= r.hy;
-      if (!inside || (r.hx <= narrow_x && r.hy <= narrow_y)) continue;
-      r.split_x = r.hx / narrow_x >= r.hy / narrow_y;
-      (r.split_x ? r.hx : r.hy) /= 2;
-      Region upper = r;
-      (r.split_x ? r.x : r.y) -= r.split_x ? r.hx : r.hy;
-      (r.split_x ? upper.x : upper.y) += r.split_x ? r.hx : r.hy;
-      integral.regions.push_back(upper);
-      --i;  // look at the lower half again
-    }
-  };
-  for (int k = 0; k < landmark_count; ++k) {
-    const Vec2<float> p = landmark(domain, integral.cos_theta_o, k);
-    if (p.y != 0) close_in(p, 1. / 128, 1. / 128);
-  }
-  for (int i = 0; i < nx; ++i) close_in({-1 + (2 * float(i) + 1) / float(nx), 1e-6f}, 1, 1. / 2048);
-  if (!domain.half) {
-    for (int i = 0; i < nx; ++i) close_in({-1 + (2 * float(i) + 1) / float(nx), -1e-6f}, 1, 1. / 2048);
-  }
-}
-
-void advance(Integral& integral, double relative_error) {
-  integral.value = integral.error = 0;
-  double square = 0;
-  for (const Region& r : integral.regions) {
-    integral.value += r.value, integral.error += r.error, square += r.error * r.error;
-  }
-  // The rule overestimates its errors, and those of kinks have random signs: six times the root of the
-  // sum of squares bounds them, where the plain sum would ask for every kink of a table to be resolved.
-  integral.error = min(integral.error, 6 * std::sqrt(square));
-  const double allowed = relative_error * integral.value;
-  if (integral.error <= allowed || integral.regions.size() >= max_regions) {
-    integral.done = true;
-    return;
-  }
-  // Halve the worst regions that together hold the surplus of error, by a histogram of the errors down to a
-  // fiftieth of the largest.
-  constexpr std::size_t bins = 256;
-  double sum = 0, largest = 0;
-  for (const Region& r : integral.regions) sum += r.error, largest = max(largest, r.error);
-  const double surplus = sum * (1 - 0.9 * allowed / integral.error);
-  const auto bin_of = [&](const Region& r) {
-    return std::min(std::size_t(r.error / largest * bins), bins - 1);
-  };
-  std::array<double, bins> held{};
-  for (const Region& r : integral.regions) held[bin_of(r)] += r.error;
-  std::size_t lowest = bins - 1;
-  for (double above = held[lowest]; above < surplus && lowest > bins / 50; above += held[lowest]) --lowest;
-  std::vector<Region> next;
-  std::vector<Region> children;
-  for (std::size_t i = 0; i < integral.regions.size(); ++i) {
-    Region r = integral.regions[i];
-    if (bin_of(r) < lowest) {
-      next.push_back(r);
-      continue;
-    }
-    (r.split_x ? r.hx : r.hy) /= 2;
-    for (const double sign : {-1., 1.}) {
-      Region child = r;
-      (r.split_x ? child.x : child.y) += sign * (r.split_x ? r.hx : r.hy);
-      children.push_back(child);
-    }
-  }
-  integral.fresh = next.size();
-  next.insert(next.end(), children.begin(), children.end());
-  integral.regions = std::move(next);
-}
-
-struct Integrals {
-  std::vector<double> values;
-  double error = 0;  // the largest, relative; more than asked for where max_regions do not reach it
-};
-
-// Integrates T over the square for every cosine; all integrals advance together, a round a batch.
-Integrals integrate(const Field& field, const std::vector<float>& cosines, double relative_error,
-                    const Host& host, std::uint64_t* evaluations) {
-  const double area = field.domain.half ? 2 : 4;
-  std::vector<Integral> integrals(cosines.size());
-  for (std::size_t i = 0; i < cosines.size(); ++i) {
-    integrals[i].cos_theta_o = cosines[i];
-    start(integrals[i], field.domain);
-  }
-  std::vector<FieldPoint> points;
-  std::vector<FieldValue> values;
-  std::vector<std::size_t> first(integrals.size());  // of each integral's points
-  for (bool busy = true; busy;) {
-    points.clear();
-    for (std::size_t i = 0; i < integrals.size(); ++i) {
-      const Integral& integral = integrals[i];
-      first[i] = points.size();
-      if (integral.done) continue;
-      for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r) {
-        const Region& region = integral.regions[r];
-        for (const Vec2<float>& q : rule_points) {
-          points.push_back(
-              {integral.cos_theta_o,
-               {float(region.x + region.hx * double(q.x)), float(region.y + region.hy * double(q.y))}});
-        }
-      }
-    }
-    values.resize(points.size());
-    eval_in_parallel(field, host, points, values);
-    *evaluations += points.size();
-    host.parallel_for(integrals.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Integral& integral = integrals[i];
-        if (integral.done) continue;
-        const FieldValue* v = values.data() + first[i];
-        for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r, v += rule_size) {
-          apply_rule(integral.regions[r], v, area);
-        }
-        advance(integral, relative_error);
-      }
-    });
-    busy = std::any_of(integrals.begin(), integrals.end(), [](const Integral& i) { return !i.done; });
-  }
-  Integrals result;
-  for (const Integral& integral : integrals) {
-    result.values.push_back(integral.value);
-    if (integral.value > 0) result.error = max(result.error, integral.error / integral.value);
-  }
-  return result;
-}
 
 // A panel of the table: five equidistant nodes in theta_o (in which measured tables are smooth at the normal,
 // where the cosine has a branch point) and the polynomial through them. Between kinks the albedo is smooth,
 // so that a few integrals serve many entries of the table.
 struct Panel {
   double lo, hi;
+  int level = 0;
+  bool jump = false;  // as narrow as it gets: the albedo leaps across it
   std::array<double, 2> predicted{inf, inf};  // at the odd nodes, by the panel that was halved
 };
 double node_of(const Panel& p, int i) {
@@ -271,18 +85,13 @@ void tabulate(const Panel& panel, const std::array<double, 5>& v, const Factor& 
   table[cosine_of(theta_at(t1))] = max(a1, 0.);
 }
 
-}  // namespace
-
-AlbedoTable build_albedo(const Field& field, float relative_error, const Host& host,
-                         std::uint64_t* evaluations) {
-  double error = double(relative_error);
-  const auto cubature_error = [&error] { return 0.25 * error; };
-  const auto interpolation_error = [&error] { return 0.15 * error; };
+// What a function's traits and the kinks of measured tables suggest, in radians.
+std::vector<double> first_borders(const BrdfTraits& traits) {
   // Panels of at most 7.5 degrees, and octaves towards the horizon. Where a mirror lobe passes the kinks of a
   // table over the difference angle, a panel begins at every second kink: the one between is met by the
   // middle node, and the parabola shows what it weighs.
   constexpr std::size_t steps = 12;
-  const std::vector<float> kinks = field.f.traits().theta_d_knots;
+  const std::vector<float>& kinks = traits.theta_d_knots;
   const bool dense = kinks.size() >= 2 * steps;  // then their panels are narrower than the steps
   std::vector<double> borders;
   for (std::size_t i = 0; i < (dense ? 1 : steps); ++i)
@@ -291,76 +100,227 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Host& h
   for (const double near : {0.5, 1.5, 3.75})
     borders.push_back(near * pi_v<double> / 180);  // kinks of tables crowd
   for (const int octave : {4, 5, 7, 10, 13, 17}) borders.push_back(std::acos(std::ldexp(1., -octave)));
-  for (const float theta : field.f.traits().theta_o_knots) {
+  for (const float theta : traits.theta_o_knots) {
     if (theta > 1e-3f && cos(theta) > 1.5f * min_cos_theta_o) borders.push_back(double(theta));
   }
-  std::sort(borders.begin(), borders.end());
-  borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
+  return borders;
+}
 
+// The table under construction: panels, the integrals at their nodes, and the error that all are content with.
+class TableBuilder {
+ public:
+  TableBuilder(const Field& field, float relative_error, const std::vector<float>& jumps, const Host& host,
+               Effort& effort)
+      : field_(field), host_(host), effort_(effort), error_(double(relative_error)),
+        known_(field.f.traits().theta_o_factor), start_(effort.evaluations), budget_(effort.limit / 3),
+        apart_{0, effort.limit} {
+    std::vector<double> borders = first_borders(field.f.traits());
+    for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
+    std::sort(borders.begin(), borders.end());
+    borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
+    first_ = borders.front();
+    for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
+      const bool jump = std::any_of(jumps.begin(), jumps.end(), [&](float theta) {
+        return borders[i] >= before(theta) && borders[i + 1] <= after(theta);
+      });
+      open_.push_back({borders[i], borders[i + 1], 0, jump});
+    }
+  }
+
+  // Refines until every panel is smooth enough.
+  void refine() { refine(true); }
+
+  // Integrals at random places inside the panels, by another cubature: panels that miss them are refined, a few
+  // times; what is missed in the end, the table states.
+  void check(std::uint64_t seed) {
+    constexpr int rounds = 4;
+    Pcg32 u(seed, 19);
+    std::vector<Panel> fresh = closed_;
+    for (int round = 0; !fresh.empty(); ++round) {
+      const AlbedoTable now = table();
+      std::vector<float> cosines;
+      std::vector<Panel> checked;
+      for (const Panel& panel : fresh) {
+        if (panel.jump || panel.hi - panel.lo < 1e-5) continue;
+        for (int k = 0; k < (panel.hi > 1.48 ? 3 : 1); ++k) {
+          cosines.push_back(cosine_of(lerp(to_unit_double(u()), panel.lo, panel.hi)));
+          checked.push_back(panel);
+        }
+      }
+      std::vector<double> misses = misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress});
+      // Where they disagree a third and finer cubature decides.
+      std::vector<float> doubtful;
+      for (std::size_t i = 0; i < cosines.size(); ++i) {
+        if (misses[i] > accepted * error_) doubtful.push_back(cosines[i]);
+      }
+      const std::vector<double> decided =
+          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress});
+      double worst = 0;
+      std::vector<Panel> missed;
+      for (std::size_t i = 0, d = 0; i < cosines.size(); ++i) {
+        const double miss = misses[i] > accepted * error_ ? decided[d++] : misses[i];
+        worst = max(worst, miss);
+        const Panel& p = checked[i];
+        if (miss > accepted * error_ && p.level < deepest && (missed.empty() || missed.back().lo != p.lo))
+          missed.push_back(p);
+      }
+      if (missed.empty() || round == rounds || effort_.evaluations - start_ > budget_) {
+        if (worst > error_) missed_ = 2 * worst;
+        return;
+      }
+      // A half that the parabola finds smooth was so before it was halved: trust is what was wrong here.
+      std::vector<Panel> kept;
+      for (const Panel& p : closed_) {
+        const bool again = std::any_of(missed.begin(), missed.end(), [&](const Panel& m) { return m.lo == p.lo; });
+        if (!again) kept.push_back(p);
+        else halve(p, open_);
+      }
+      // The integrals themselves may be what was wrong.
+      rim_ = true;
+      for (const Panel& p : missed) {
+        for (int i = 0; i < 5; ++i) nodes_.erase(node_of(p, i));
+      }
+      closed_ = std::move(kept);
+      const std::size_t before_refining = closed_.size();
+      refine(false);
+      fresh.assign(closed_.begin() + std::ptrdiff_t(before_refining), closed_.end());
+    }
+  }
+
+  AlbedoTable table() const {
+    std::map<float, double> entries{{1.f, nodes_.at(first_) * factor(first_)}};
+    const Factor by = [this](double theta_o) { return factor(theta_o); };
+    for (const Panel& panel : closed_) {
+      const std::array<double, 5> v = values_of(panel);
+      if (panel.jump) entries[cosine_of(panel.hi)] = max(v[4] * factor(panel.hi), 0.);
+      else tabulate(panel, v, by, 0, 4, interpolation_error(), 8, entries);
+    }
+    AlbedoTable table;
+    for (const auto& [c, a] : entries) table.cos_theta_o.push_back(c), table.albedo.push_back(float(a));
+    table.relative_error = worst_ > 1.001 * cubature_error() ? float(min(4 * worst_, 1.)) : float(error_);
+    table.relative_error = max(table.relative_error, float(min(max(missed_, 2 * noise_), 1.)));
+    return table;
+  }
+
+ private:
+  static constexpr int deepest = 10;
+  static constexpr double accepted = 0.7;  // of the error, between table and check
+  static constexpr float grazing_cosine = 1.745e-3f;  // of 89.9 degrees; beyond, ten times the error is allowed
+  static constexpr float progress = 0.1f, progress_end = 0.4f;
+
+  double cubature_error() const { return 0.25 * error_; }
+  double interpolation_error() const { return 0.15 * error_; }
+  // Where floats of the cosine tell both sides of a jump apart.
+  static double half_width(float theta) { return max(1e-6, 2e-7 / std::sin(double(theta))); }
+  static double before(float theta) { return double(theta) - half_width(theta); }
+  static double after(float theta) { return double(theta) + half_width(theta); }
   // The nodes hold the albedo without the factor that the function knows of.
-  const Factor known = field.f.traits().theta_o_factor;
-  const Factor factor = [&known](double theta_o) { return known ? known(theta_o) : 1.; };
-  std::vector<Panel> open, closed;
-  for (std::size_t i = 0; i + 1 < borders.size(); ++i) open.push_back({borders[i], borders[i + 1]});
-  std::map<double, double> nodes;
-  double worst = 0;  // of the integrals, as they estimate it
-  const auto integrate_nodes = [&](const std::vector<double>& thetas) {
+  double factor(double theta_o) const { return known_ ? known_(theta_o) : 1.; }
+
+  std::array<double, 5> values_of(const Panel& panel) const {
+    std::array<double, 5> v;
+    for (int i = 0; i < 5; ++i) v[std::size_t(i)] = nodes_.at(node_of(panel, i));
+    return v;
+  }
+  // By how much the table misses integrals, relatively; near grazing ten times as much is a miss of one.
+  std::vector<double> misses_at(const AlbedoTable& table, const std::vector<float>& cosines,
+                                const IntegralOptions& options) {
+    const Integrals seen = integrate(field_, cosines, options, host_, apart_);
+    std::vector<double> misses;
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      const double a = double(albedo_at(table, cosines[i])), b = seen.values[i];
+      const double allowance = cosines[i] < grazing_cosine ? 10 : 1;
+      misses.push_back(max(a, b) > 0 ? std::abs(a - b) / max(a, b) / allowance : 0);
+    }
+    return misses;
+  }
+  void refine(bool with_pilots) {
+    for (; !open_.empty(); with_pilots = false) {
+      integrate_open(with_pilots);
+      std::vector<Panel> next;
+      const bool spent = effort_.evaluations - start_ > budget_;
+      for (const Panel& panel : open_) {
+        // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less. What the
+        // parent's polynomial of degree 4 missed there is known, too, and this half misses less.
+        const std::array<double, 5> v = values_of(panel);
+        double miss = 0, parent_miss = 0, scale = 0;
+        for (const int i : {1, 3}) {
+          const auto k = std::size_t(i);
+          miss = max(miss, std::abs(interpolate(v, 2, i) - v[k]));
+          parent_miss = max(parent_miss, std::abs(panel.predicted[k / 2] - v[k]));
+          scale = max(scale, v[k]);
+        }
+        const double allowed = interpolation_error() * scale;
+        const bool rough = miss > 4 * allowed && parent_miss > 3 * allowed && !panel.jump;
+        if (rough && spent && scale > 0) noise_ = max(noise_, miss / scale);
+        if (rough && !spent && panel.level < deepest) {
+          halve(panel, next);
+        } else {
+          closed_.push_back(panel);
+        }
+      }
+      open_ = std::move(next);
+    }
+  }
+  void halve(const Panel& p, std::vector<Panel>& halves) const {
+    const std::array<double, 5> v = values_of(p);
+    const double mid = node_of(p, 2);
+    halves.push_back({p.lo, mid, p.level + 1, false, {interpolate(v, 1, 0.5), interpolate(v, 1, 1.5)}});
+    halves.push_back({mid, p.hi, p.level + 1, false, {interpolate(v, 1, 2.5), interpolate(v, 1, 3.5)}});
+  }
+  void integrate_nodes(const std::vector<double>& thetas) {
     std::vector<float> cosines;
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
-    const Integrals a = integrate(field, cosines, cubature_error(), host, evaluations);
-    for (std::size_t i = 0; i < thetas.size(); ++i) nodes[thetas[i]] = a.values[i] / factor(thetas[i]);
-    worst = max(worst, a.error);
-  };
-  const auto values_of = [&](const Panel& panel) {
-    std::array<double, 5> v;
-    for (int i = 0; i < 5; ++i) v[std::size_t(i)] = nodes[node_of(panel, i)];
-    return v;
-  };
-  for (int level = 0; !open.empty(); ++level) {
+    const Integrals a =
+        integrate(field_, cosines, {cubature_error(), 8, 4, rim_, progress, progress_end}, host_, effort_);
+    for (std::size_t i = 0; i < thetas.size(); ++i) nodes_[thetas[i]] = a.values[i] / factor(thetas[i]);
+    worst_ = max(worst_, a.error);
+  }
+  // The nodes of the open panels that are not known yet; at first one in eight ahead of the others.
+  void integrate_open(bool with_pilots) {
     std::vector<double> pilots, fresh;
-    for (const Panel& panel : open) {
+    for (const Panel& panel : open_) {
       for (int i = 0; i < 5; ++i) {
-        if (!nodes.emplace(node_of(panel, i), 0.).second) continue;
-        const bool pilot = level == 0 && (pilots.size() + fresh.size()) % 8 == 0;
+        if (!nodes_.emplace(node_of(panel, i), 0.).second) continue;
+        const bool pilot = with_pilots && (pilots.size() + fresh.size()) % 8 == 0;
         (pilot ? pilots : fresh).push_back(node_of(panel, i));
       }
     }
-    // A function with steps has no albedo to four digits for any decent number of evaluations: where the
-    // first few integrals do not get there, all are content with what is easily had, and the table says so.
+    // A function with steps, or with the noise of floats, has no albedo to four digits for any decent number of
+    // evaluations: where the first few integrals do not get there, or are too dear, all are content with what
+    // is easily had, and the table says so.
+    const std::uint64_t before_pilots = effort_.evaluations;
     integrate_nodes(pilots);
-    if (worst > cubature_error()) error = min(8 * worst, 1.);
-    integrate_nodes(fresh);
-    std::vector<Panel> next;
-    for (const Panel& panel : open) {
-      // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less. What the
-      // parent's polynomial of degree 4 missed there is known, too, and this half misses less.
-      const std::array<double, 5> v = values_of(panel);
-      double miss = 0, parent_miss = 0, scale = 0;
-      for (const int i : {1, 3}) {
-        const auto k = std::size_t(i);
-        miss = max(miss, std::abs(interpolate(v, 2, i) - v[k]));
-        parent_miss = max(parent_miss, std::abs(panel.predicted[k / 2] - v[k]));
-        scale = max(scale, v[k]);
-      }
-      const double allowed = interpolation_error() * scale;
-      if (miss > 4 * allowed && parent_miss > 3 * allowed && level < 10) {
-        const double mid = node_of(panel, 2);
-        next.push_back({panel.lo, mid, {interpolate(v, 1, 0.5), interpolate(v, 1, 1.5)}});
-        next.push_back({mid, panel.hi, {interpolate(v, 1, 2.5), interpolate(v, 1, 3.5)}});
-      } else {
-        closed.push_back(panel);
-      }
+    if (worst_ > cubature_error()) error_ = min(8 * worst_, 1.);
+    if (with_pilots && !pilots.empty()) {
+      const double each = double(effort_.evaluations - before_pilots) / double(pilots.size());
+      const double dear = 2 * each * double(fresh.size()) / double(budget_);
+      if (dear > 1) error_ = min(error_ * 2 * std::sqrt(dear), 1.);
     }
-    open = std::move(next);
+    integrate_nodes(fresh);
   }
-  std::map<float, double> entries{{1.f, nodes[borders.front()] * factor(borders.front())}};
-  for (const Panel& panel : closed) {
-    tabulate(panel, values_of(panel), factor, 0, 4, interpolation_error(), 8, entries);
-  }
-  AlbedoTable table;
-  for (const auto& [c, a] : entries) table.cos_theta_o.push_back(c), table.albedo.push_back(float(a));
-  table.relative_error = worst > 1.001 * cubature_error() ? float(min(4 * worst, 1.)) : float(error);
-  return table;
+
+  const Field& field_;
+  const Host& host_;
+  Effort& effort_;
+  double error_;
+  const Factor known_;
+  std::uint64_t start_, budget_;
+  Effort apart_;  // of the checks: evaluations count what the sampler is made of
+  bool rim_ = false;  // close in on the rim: the first integrals were found wrong
+  double first_ = 0, worst_ = 0, missed_ = 0, noise_ = 0;  // worst: of the integrals, as they estimate it
+  std::vector<Panel> open_, closed_;
+  std::map<double, double> nodes_;
+};
+
+}  // namespace
+
+AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
+                         std::uint64_t seed, const Host& host, Effort& effort) {
+  TableBuilder builder(field, relative_error, jumps, host, effort);
+  builder.refine();
+  builder.check(seed);
+  return builder.table();
 }
 
 }  // namespace detail

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "field.hpp"
-#include "reflectree/sampler/sampler_data.hpp"
 
 namespace reflectree::detail {
 
-// The albedo a(wo) of the target as a piecewise-linear table, by adaptive cubature over the domain and
-// adaptive nodes in cos_theta_o, both to a relative error.
-AlbedoTable build_albedo(const Field& field, float relative_error, const Host& host,
-                         std::uint64_t* evaluations);
+// The albedo over theta_o, checked between its nodes by integrals of another kind. `jumps`: elevations, radians,
+// at which f changes by leaps. Takes a third of the effort at most, as far as it can: the table states a larger
+// error then.
+AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
+                         std::uint64_t seed, const Host& host, Effort& effort);
 
 }  // namespace reflectree::detail

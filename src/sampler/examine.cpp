@@ -2,13 +2,14 @@
 #include "examine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "grow.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/math/frame.hpp"
 #include "reflectree/math/random.hpp"
-#include "reflectree/sampler/albedo.hpp"
+#include "refuse.hpp"
 
 namespace reflectree::detail {
 
@@ -16,8 +17,7 @@ namespace {
 
 constexpr std::size_t pairs = 4096;
 constexpr float symmetric_enough = 1e-4f;  // mirror images are one function, up to rounding
-constexpr float half_square_up_to = 0.2f;  // asymmetry that still is cheaper on half a square
-constexpr float isotropic_enough = 1e-2f;
+constexpr float isotropic_enough = 3e-4f;  // relative, of every pair, beyond what rounding explains
 
 Direction mirrored(Direction w) { return {w.x, -w.y, w.z}; }
 Direction turned(Direction w, float c, float s) { return {c * w.x - s * w.y, s * w.x + c * w.y, w.z}; }
@@ -37,165 +37,186 @@ void make_pairs(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Dire
   }
 }
 
-struct Difference {
-  float relative = 0;  // sum |a - b| / sum (a + b) / 2
-  std::size_t worst = 0;
-};
-Difference difference(const std::vector<float>& a, const std::vector<float>& b, std::size_t channels) {
-  double miss = 0, sum = 0;
-  float worst = -1;
-  Difference d;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const float m = abs(a[i] - b[i]);
-    miss += double(m), sum += 0.5 * (double(a[i]) + double(b[i]));
-    if (m > worst) worst = m, d.worst = i / channels;
-  }
-  d.relative = sum > 0 ? float(miss / sum) : 0.f;
-  return d;
-}
-
-std::string describe(Direction wo, Direction wi) {
-  char text[160];
-  std::snprintf(text, sizeof text, " at wo = (%.7g, %.7g, %.7g), wi = (%.7g, %.7g, %.7g)", double(wo.x),
-                double(wo.y), double(wo.z), double(wi.x), double(wi.y), double(wi.z));
-  return text;
-}
-
-// What half a square costs beside a whole one, however many leaves it has: the mass of the larger of both
-// mirror images over that of their mean, less 1, at the worst of the slabs. Points are drawn by the trees'
-// own bounds.
-float folding_cost(const std::vector<Slab>& slabs, const Field& field, std::uint64_t seed) {
-  constexpr std::size_t points_a_slab = 4096;
-  Pcg32 u(seed, 13);
-  float worst = 0;
-  for (const Slab& slab : slabs) {
-    std::vector<FieldPoint> points;
-    std::vector<double> weight;
-    const double step = double(total(slab, &Leaf::cost)) / double(points_a_slab);
-    double cost = 0, next = 0.5 * step;
-    for (const std::uint32_t i : leaves_in_order(slab)) {
-      const Leaf& leaf = slab.nodes[i].leaf;
-      const Box box = box_of(leaf.cell, field.domain);
-      for (cost += double(leaf.cost); next < cost; next += step) {
-        points.push_back(
-            {slab.cos_theta_o[1],
-             {box.x0 + box.width * to_unit_float(u()), box.y0 + box.height * to_unit_float(u())}});
-        weight.push_back(1 / double(leaf.share));
+// Beside the lobes that f tells of, and the ridges.
+void add_lobe_pairs(const AnyBrdf& f, const std::vector<Ridge>& ridges, std::vector<Direction>& wo,
+                    std::vector<Direction>& wi) {
+  const auto add = [&](Direction known, const SharpLobe& lobe) {
+    const Frame<float> frame = frame_from_normal(lobe.centre);
+    for (const float r : {0.f, 0.3f, 0.6f}) {
+      for (const Direction& along : {frame.s, frame.t}) {
+        const Direction w = normalize(lobe.centre + r * lobe.width * along);
+        if (w.z > 1e-3f) wo.push_back(known), wi.push_back(w);
       }
     }
-    std::vector<FieldValue> values(points.size());
-    field.eval(points, values);
-    double mean = 0, upper = 0;
-    for (std::size_t k = 0; k < points.size(); ++k)
-      mean += weight[k] * double(values[k].mean), upper += weight[k] * double(values[k].upper);
-    if (mean > 0) worst = max(worst, float(upper / mean - 1));
+  };
+  for (int k = 0; k < 16; ++k) {
+    const float theta = 0.05f + 0.1f * float(k);
+    const Direction known = wo_from_cosine(max(cos(theta), 1e-3f));
+    if (f.traits().sharp) {
+      for (const SharpLobe& lobe : f.traits().sharp(known)) add(known, lobe);
+    }
+    for (const Ridge& ridge : ridges) {
+      if (const auto lobe = ridge.at(theta)) add(known, *lobe);
+    }
   }
-  return worst;
+}
+
+using Values = std::vector<float>;
+Values values_at(const AnyBrdf& f, const std::vector<Direction>& wo, const std::vector<Direction>& wi) {
+  Values values(wo.size() * std::size_t(f.channels()));
+  f.eval(wo, wi, values);
+  return values;
+}
+
+void refuse_bad_values(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
+                       const std::vector<Direction>& wi) {
+  const auto channels = std::size_t(f.channels());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (is_good(values[k])) continue;
+    const std::size_t i = k / channels;
+    refuse_values(std::span(values).subspan(i * channels, channels), f.traits().name, wo[i], wi[i]);
+  }
+}
+
+// What f takes on beside a pair, where rounding moves directions: lowest and highest, per channel.
+struct Range {
+  float lo, hi;
+};
+std::vector<Range> ranges_beside(const AnyBrdf& f, Direction wo, Direction wi, Pcg32& u) {
+  constexpr std::size_t neighbours = 24;
+  constexpr float far = 4e-7f;
+  const auto moved = [&u](Direction w) {
+    const auto shift = [&u] { return far * (2 * to_unit_float(u()) - 1); };
+    return normalize(Direction{w.x + shift(), w.y + shift(), max(w.z + shift(), 1e-7f)});
+  };
+  std::vector<Direction> o{wo}, i{wi};
+  while (o.size() < neighbours) o.push_back(moved(wo)), i.push_back(moved(wi));
+  const auto channels = std::size_t(f.channels());
+  const Values values = values_at(f, o, i);
+  std::vector<Range> ranges(channels, {1e38f, -1e38f});
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    Range& r = ranges[k % channels];
+    r = {min(r.lo, values[k]), max(r.hi, values[k])};
+  }
+  return ranges;
+}
+
+// Refuses what changes when both directions turn about the normal, by more than rounding explains: the pairs
+// that change most are looked at again among their neighbours.
+void refuse_anisotropy(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
+                       const std::vector<Direction>& wi, std::uint64_t seed) {
+  const std::size_t looked_at = std::min<std::size_t>(64, wo.size());
+  const auto channels = std::size_t(f.channels());
+  Pcg32 u(seed, 12);
+  std::vector<Direction> other_wo = wo, other_wi = wi;
+  std::vector<float> angle(wo.size());
+  for (std::size_t k = 0; k < wo.size(); ++k) {
+    angle[k] = 6.2831853f * to_unit_float(u());
+    const float c = cos(angle[k]), s = sin(angle[k]);
+    other_wo[k] = turned(wo[k], c, s), other_wi[k] = turned(wi[k], c, s);
+  }
+  const Values other = values_at(f, other_wo, other_wi);
+  refuse_bad_values(f, other, other_wo, other_wi);
+  double mean = 0;
+  for (const float v : values) mean += double(v) / double(values.size());
+  const auto floor = float(1e-6 * mean);
+  std::vector<float> change(wo.size(), 0);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const float c = abs(values[k] - other[k]) / (max(values[k], other[k]) + floor + 1e-38f);
+    change[k / channels] = max(change[k / channels], c);
+  }
+  std::vector<std::size_t> order(wo.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(looked_at), order.end(),
+                    [&](std::size_t a, std::size_t b) { return change[a] != change[b] ? change[a] > change[b] : a < b; });
+  Pcg32 jitter(seed, 14);
+  for (std::size_t n = 0; n < looked_at && change[order[n]] > isotropic_enough; ++n) {
+    const std::size_t k = order[n];
+    const auto here = ranges_beside(f, wo[k], wi[k], jitter),
+               there = ranges_beside(f, other_wo[k], other_wi[k], jitter);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const float gap = max(here[c].lo - there[c].hi, there[c].lo - here[c].hi);
+      if (gap <= isotropic_enough * max(here[c].hi, there[c].hi) + floor) continue;
+      char what[160];
+      std::snprintf(what, sizeof what,
+                    "the BRDF changes when both directions turn by %.4g degrees about the normal, from %.6g to %.6g: "
+                    "it is anisotropic",
+                    double(angle[k]) * 180 / pi_v<double>, double(values[k * channels + c]),
+                    double(other[k * channels + c]));
+      throw Error(what, f.traits().name + " at " + describe(wo[k], wi[k]),
+                  "use an isotropic function; anisotropic samplers are not built yet");
+    }
+  }
+}
+
+// Sum of |a - b| over half the sum of both.
+float difference(const Values& a, const Values& b) {
+  double miss = 0, sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    miss += double(abs(a[i] - b[i])), sum += 0.5 * (double(a[i]) + double(b[i]));
+  }
+  return sum > 0 ? float(miss / sum) : 0.f;
+}
+
+// The largest channel that a climb from the brightest pair finds, where that is suspiciously dark: the pairs may
+// have met nothing but the tail of a lobe.
+float summit(const AnyBrdf& f, float largest, Direction wo, Direction wi) {
+  if (largest == 0 || largest > 1e-6f) return largest;
+  const Ridge ridge = follow_ridge(f, {TargetKind::maximum, 0, 1e30f}, acos(min(wo.z, 1.f)), wi);
+  std::vector<Direction> o, i;
+  for (std::size_t k = 0; k < ridge.lobe.size(); ++k) {
+    o.push_back(wo_from_cosine(cos(ridge.theta_o[k]))), i.push_back(ridge.lobe[k].centre);
+  }
+  const Values values = values_at(f, o, i);
+  return max(largest, *std::max_element(values.begin(), values.end()));
+}
+
+// The power of two that brings values near 1 whose squares would leave the range of float.
+float scale_for(const AnyBrdf& f, float largest) {
+  if (largest == 0 || (largest > 1e-15f && largest < 1e15f)) return 1;
+  if (largest < 1e-35f) {
+    char what[96];
+    std::snprintf(what, sizeof what, "the BRDF returned no more than %.3g, where floats have few digits left",
+                  double(largest));
+    throw Error(what, f.traits().name, "multiply it by a constant and divide the weights by it");
+  }
+  return std::ldexp(1.f, -std::ilogb(largest));
 }
 
 }  // namespace
 
-Examination examine(const AnyBrdf& f, const BuildOptions& options, const Host&) {
-  const auto channels = std::size_t(f.channels());
-  if (f.channels() < 1 || f.channels() > max_channels) {
-    throw Error("the BRDF has " + std::to_string(f.channels()) + " channels", f.traits().name,
-                "give it 1 to " + std::to_string(max_channels));
-  }
+Examination examine(const AnyBrdf& f, const BuildOptions& options, const std::vector<Ridge>& ridges) {
   if (!f.traits().isotropic) {
     throw Error("the material is anisotropic: it depends on the azimuth of wo", f.traits().name,
                 "use an isotropic material; anisotropic samplers are not built yet");
   }
   std::vector<Direction> wo, wi;
   make_pairs(options.seed, wo, wi);
-  const auto values_at = [&](const std::vector<Direction>& o, const std::vector<Direction>& i) {
-    std::vector<float> values(o.size() * channels);
-    f.eval(o, i, values);
-    return values;
-  };
-  const std::vector<float> first = values_at(wo, wi);
+  add_lobe_pairs(f, ridges, wo, wi);
+  const Values first = values_at(f, wo, wi);
+  refuse_bad_values(f, first, wo, wi);
+  const Values second = values_at(f, wo, wi);
   for (std::size_t k = 0; k < first.size(); ++k) {
-    if (std::isfinite(first[k]) && first[k] >= 0) continue;
-    throw Error("the BRDF returned " + std::to_string(first[k]) + ": it must be finite and not negative",
-                f.traits().name + describe(wo[k / channels], wi[k / channels]),
-                "mend the function at these directions");
-  }
-  const std::vector<float> second = values_at(wo, wi);
-  if (first != second) {
-    const Difference d = difference(first, second, channels);
+    if (first[k] == second[k]) continue;
+    const std::size_t i = k / std::size_t(f.channels());
     throw Error(
         "two calls with the same directions gave different values: a stochastic function has no bounds",
-        f.traits().name + describe(wo[d.worst], wi[d.worst]), "average it into a deterministic function");
+        f.traits().name + " at " + describe(wo[i], wi[i]), "average it into a deterministic function");
   }
-  std::vector<Direction> other_wo = wo, other_wi = wi;
-  Pcg32 u(options.seed, 12);
-  for (std::size_t k = 0; k < wo.size(); ++k) {
-    const float phi = 6.2831853f * to_unit_float(u()), c = cos(phi), s = sin(phi);
-    other_wo[k] = turned(wo[k], c, s), other_wi[k] = turned(wi[k], c, s);
-  }
-  const Difference turn = difference(first, values_at(other_wo, other_wi), channels);
-  if (turn.relative > isotropic_enough) {
-    throw Error("the BRDF changes when both directions turn about the normal: it is anisotropic",
-                f.traits().name + describe(wo[turn.worst], wi[turn.worst]),
-                "use an isotropic material; anisotropic samplers are not built yet");
-  }
-  for (std::size_t k = 0; k < wo.size(); ++k) other_wi[k] = mirrored(wi[k]);
+  refuse_anisotropy(f, first, wo, wi, options.seed);
   Examination seen;
-  seen.asymmetry = difference(first, values_at(wo, other_wi), channels).relative;
+  seen.target = options.target;
+  const auto largest = std::max_element(first.begin(), first.end());
+  const auto brightest = std::size_t(largest - first.begin()) / std::size_t(f.channels());
+  seen.brightest_wo = wo[brightest], seen.brightest_wi = wi[brightest];
+  if (options.target.scale == 1) seen.target.scale = scale_for(f, summit(f, *largest, wo[brightest], wi[brightest]));
+  std::vector<Direction> other_wi = wi;
+  for (Direction& w : other_wi) w = mirrored(w);
+  const Values other = values_at(f, wo, other_wi);
+  refuse_bad_values(f, other, wo, other_wi);
+  seen.asymmetry = difference(first, other);
   seen.mirror_symmetric = seen.asymmetry <= symmetric_enough;
   return seen;
-}
-
-Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examination& seen,
-                     const Host& host) {
-  constexpr float degree = pi / 180;
-  constexpr struct {
-    float theta, width;
-  } trials[] = {{2, 3}, {20, 3}, {40, 3}, {60, 3}, {75, 2}, {84, 1}, {88.5f, 0.5f}};
-  const bool half = seen.asymmetry <= half_square_up_to;
-  const AlbedoTable flat{{min_cos_theta_o, 1}, {1, 1}, 0};
-  // A coarser goal, and no slab is halved: what theta_o costs is counted in.
-  const float goal = 1 + 2 * (options.expected_trials - 1);
-  GrowthRules rules{goal, 1, 2000, false, true, analyse_exact, 1e30f};
-  Domain best;
-  std::vector<Slab> best_slabs;
-  float least = 1e30f;
-  for (const Domain domain :
-       {Domain{DomainKind::half_vector, half, 0}, Domain{DomainKind::equal_area, half, 0},
-        Domain{DomainKind::projected_disk, half, 0}, Domain{DomainKind::back_vector, half, 0},
-        Domain{DomainKind::stretched, half, 1.5f}}) {
-    std::vector<Slab> slabs;
-    for (const auto& t : trials)
-      slabs.push_back(make_slab(t.theta * degree, (t.theta + t.width) * degree, flat, domain));
-    std::uint64_t evaluations = 0;
-    const Field field{f, options.target, domain, half && !seen.mirror_symmetric};
-    grow(slabs, field, flat, rules, host, &evaluations);
-    float price = 0;
-    for (const Slab& slab : slabs) {
-      double cost = 0, ideal = 0, theta_cost = 0;
-      float leaves = 0;
-      for (const Node& node : slab.nodes) {
-        if (node.split != Split::leaf) continue;
-        cost += double(node.leaf.cost), ideal += double(node.leaf.ideal),
-            theta_cost += double(node.leaf.theta_cost);
-        ++leaves;
-      }
-      if (!(ideal > 0)) continue;
-      const float budget = goal - 1;
-      const float missed = max(1.f, float((cost - ideal) / ideal) / budget);
-      const float narrower = max(1.f, float(theta_cost / ideal) / (0.4f * budget));
-      price += leaves * missed * missed * narrower;
-    }
-    if (price < least) least = price, best = domain, best_slabs = std::move(slabs);
-    // Who needs twice as many leaves in one slab as the best in all has lost.
-    rules.max_leaves = std::size_t(clamp(2 * least, 32.f, 2000.f));
-  }
-  // Leaves grow as 1 / (what is left of the trials allowed): past half of them a whole square is cheaper.
-  if (half && !seen.mirror_symmetric) {
-    const Field field{f, options.target, best, true};
-    const float cost = folding_cost(best_slabs, field, options.seed);
-    best.half = cost < 0.5f * (options.expected_trials - 1);
-  }
-  return best;
 }
 
 }  // namespace reflectree::detail

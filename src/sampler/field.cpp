@@ -3,32 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <mutex>
 
 #include "reflectree/error.hpp"
+#include "reflectree/math/frame.hpp"
+#include "refuse.hpp"
 
 namespace reflectree::detail {
 
 namespace {
-
-std::string describe(Direction w) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.7g, %.7g, %.7g)", double(w.x), double(w.y), double(w.z));
-  return text;
-}
-
-void check(float t, std::span<const float> value, const ShadingGeometry<float>& g, const AnyBrdf& f) {
-  bool good = std::isfinite(t) && t >= 0;
-  for (const float c : value) good = good && c >= 0;
-  if (good) return;
-  std::string text;
-  for (const float c : value) text += (text.empty() ? "" : ", ") + std::to_string(c);
-  throw Error("the BRDF returned [" + text + "]: it must be finite and not negative",
-              f.traits().name + " at wo = " + describe(g.wo) + ", wi = " + describe(g.wi),
-              "mend the function at these directions");
-}
 
 constexpr std::size_t block = 512;  // points evaluated by one call
 
@@ -54,7 +38,9 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
     const auto target_of = [&](std::size_t k) {
       const std::span<const float> value(values.data() + k * std::size_t(channels), std::size_t(channels));
       const float t = target(value.data(), channels);
-      check(t, value, geometry[k], f);
+      bool good = is_good(t);
+      for (const float v : value) good = good && v >= 0;
+      if (!good) refuse_values(value, f.traits().name, geometry[k].wo, geometry[k].wi);
       return t;
     };
     for (std::size_t k = 0; k < count; ++k) {
@@ -65,8 +51,48 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   }
 }
 
-void eval_in_parallel(const Field& field, const Host& host, std::span<const FieldPoint> points,
+std::vector<Landmark> Field::landmarks(float cos_theta_o) const {
+  constexpr float coarse = 1.f / 128;
+  const Direction wo = wo_from_cosine(cos_theta_o);
+  const auto place = [&](Direction wi) {
+    if (domain.half) wi.y = abs(wi.y);  // mirror images are one
+    return lower(domain, wo, wi);
+  };
+  std::vector<Landmark> places;
+  for (const Direction& wi : {Direction{-wo.x, 0, wo.z}, wo}) places.push_back({lower(domain, wo, wi), {coarse, coarse}});
+  std::vector<SharpLobe> lobes;
+  if (f.traits().sharp) lobes = f.traits().sharp(wo);
+  for (const Ridge& ridge : ridges) {
+    if (const auto lobe = ridge.at(acos(min(cos_theta_o, 1.f)))) lobes.push_back(*lobe);
+  }
+  for (const SharpLobe& lobe : lobes) {
+    if (!(lobe.centre.z > 0) || !(lobe.width > 0)) continue;
+    const Frame<float> frame = frame_from_normal(lobe.centre);
+    Landmark at{place(lobe.centre), {0, 0}};
+    // How far the square's coordinates reach over the lobe, along two directions; azimuths that wrap are far.
+    for (const Direction& tangent : {frame.s, frame.t}) {
+      const Direction beside = normalize(lobe.centre + min(lobe.width, 0.5f) * tangent);
+      if (!(beside.z > 0)) continue;
+      const Vec2<float> q = place(beside);
+      at.size = {max(at.size.x, abs(q.x - at.p.x)), max(at.size.y, abs(q.y - at.p.y))};
+    }
+    at.size = {clamp(at.size.x, 0x1p-15f, coarse), clamp(at.size.y, 0x1p-15f, coarse)};
+    places.push_back(at);
+  }
+  return places;
+}
+
+bool Survey::at_jump(float cos_theta_o) const {
+  if (!jumps || jumps->empty()) return false;
+  const float theta = acos(min(cos_theta_o, 1.f));
+  return std::any_of(jumps->begin(), jumps->end(), [theta](float jump) {
+    return abs(theta - jump) < 4e-6f + 4e-7f / sin(max(jump, 1e-3f));
+  });
+}
+
+void eval_in_parallel(const Field& field, const Host& host, Effort& effort, std::span<const FieldPoint> points,
                       std::span<FieldValue> out) {
+  effort.evaluations += points.size();
   if (host.cancelled()) throw Cancelled();
   if (!field.f.traits().concurrent) return field.eval(points, out);
   // The error of the lowest block wins, so that the message does not depend on the threads.

@@ -35,7 +35,7 @@ void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicC
 // A point inside a leaf beside its grid.
 struct Visit {
   std::size_t task;
-  Slab::Landmark at;
+  Slab::Mark at;
 };
 
 // A lobe about the pole may be narrower than the grid of a leaf that touches it: look at every octave of the
@@ -57,8 +57,9 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
 }
 
 // Evaluates the tasks in one batch and analyses each leaf.
-void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Field& field,
-              const GrowthRules& rules, const Host& host, std::uint64_t* evaluations) {
+void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Survey& survey,
+              const GrowthRules& rules) {
+  const Field& field = survey.field;
   std::vector<FieldPoint> points;
   points.reserve(tasks.size() * grid_points);
   for (const Task& task : tasks) {
@@ -69,7 +70,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const Slab& slab = slabs[tasks[t].slab];
     const Box box = box_of(slab.nodes[tasks[t].node].leaf.cell, field.domain);
-    for (const Slab::Landmark& landmark : slab.landmarks) {
+    for (const Slab::Mark& landmark : slab.marks) {
       if (!contains(box, landmark.point.p)) continue;
       visits.push_back({t, landmark});
     }
@@ -77,8 +78,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
   }
   for (const Visit& visit : visits) points.push_back(visit.at.point);
   std::vector<FieldValue> values(points.size());
-  eval_in_parallel(field, host, points, values);
-  *evaluations += points.size();
+  survey.eval(points, values);
   const auto normalised = [&](const Slab& slab, std::size_t theta, std::size_t i) {
     const float a = slab.albedo[theta];
     return a > 0 ? FieldValue{values[i].mean / a, values[i].upper / a} : FieldValue{0, 0};
@@ -87,7 +87,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
     if (value > leaf.seen) leaf.seen = value, leaf.seen_theta = theta, leaf.seen_at = points[i].p;
   };
   for (std::size_t v = 0; v < visits.size(); ++v) {
-    const Slab::Landmark& landmark = visits[v].at;
+    const Slab::Mark& landmark = visits[v].at;
     const Task& task = tasks[visits[v].task];
     const std::size_t i = tasks.size() * grid_points + v;
     Leaf& leaf = slabs[task.slab].nodes[task.node].leaf;
@@ -95,7 +95,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Fi
     leaf.crossed = leaf.crossed || landmark.travel > max(box.width, box.height);
     if (landmark.albedo > 0) note(leaf, landmark.theta, i, values[i].upper / landmark.albedo);
   }
-  host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
+  survey.host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Slab& slab = slabs[tasks[t].slab];
       Leaf& leaf = slab.nodes[tasks[t].node].leaf;
@@ -145,9 +145,8 @@ std::vector<std::uint32_t> coarsest_leaves(Slab& slab) {
   return leaves;
 }
 
-bool may_split(Leaf& leaf) {
-  if ((leaf.split_x ? leaf.cell.level_x : leaf.cell.level_y) < max_level) return true;
-  leaf.split_x = !leaf.split_x;
+// Cuts along the other axis would not help a leaf that is as small as can be along the one that matters.
+bool may_split(const Leaf& leaf) {
   return (leaf.split_x ? leaf.cell.level_x : leaf.cell.level_y) < max_level;
 }
 
@@ -156,20 +155,21 @@ std::vector<std::uint32_t> dearest_leaves(Slab& slab, const GrowthRules& rules, 
   std::vector<std::uint32_t> order, chosen;
   const auto excess = [&](std::uint32_t i) { return slab.nodes[i].leaf.cost - slab.nodes[i].leaf.ideal; };
   float worst = 0;
+  std::size_t leaves = 0;
   for (std::uint32_t i = 0; i < slab.nodes.size(); ++i) {
     if (slab.nodes[i].split != Split::leaf) continue;
+    ++leaves;
+    if (!may_split(slab.nodes[i].leaf)) continue;
     order.push_back(i);
     worst = max(worst, excess(i));
   }
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return excess(a) != excess(b) ? excess(a) > excess(b) : a < b;
   });
-  const std::size_t leaves = order.size();
   for (const std::uint32_t i : order) {
     const float e = excess(i);
     const bool enough = surplus <= 0 || (!chosen.empty() && e < min(fair, 0.5f * worst));
     if (enough || leaves + chosen.size() >= rules.max_leaves) break;
-    if (!may_split(slab.nodes[i].leaf)) continue;
     chosen.push_back(i);
     surplus -= 0.5f * e;
   }
@@ -181,18 +181,19 @@ struct Step {
   bool halve = false;
   std::vector<std::uint32_t> split;
 };
-Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, float albedo_error) {
+Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_halve, float albedo_error) {
   constexpr float narrowest_slab = 1e-5f;  // radians
   if (!state.active) return {};
   const float budget = rules.goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
-  const bool fits = cost <= rules.goal * ideal;
+  const bool nothing = cost <= 1.001f * floor_share;  // f is 0 in the slab
+  const bool fits = nothing || cost <= rules.goal * ideal;
   // A stated error is far above the true one: a large one must not hide a lobe that no grid has seen.
   const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * min(albedo_error, 0.01f);
   std::vector<std::uint32_t> blind;
   if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
   const bool met = fits && blind.empty();
-  if (rules.split_slabs && (met || state.leaves >= state.next_check) &&
+  if (may_halve && (met || state.leaves >= state.next_check) &&
       slab.theta_hi - slab.theta_lo > narrowest_slab) {
     state.next_check = state.leaves * 3 / 2;
     if (total(slab, &Leaf::theta_cost) > rules.theta_share * max(budget * ideal, cost - ideal)) {
@@ -207,7 +208,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, float alb
 
 // Replaces each halved slab by two fresh ones; the tasks already gathered move with their slabs.
 void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector<Task>& tasks,
-           const std::vector<std::uint32_t>& halved, const AlbedoTable& albedo, const Domain& domain) {
+           const std::vector<std::uint32_t>& halved, const Survey& survey) {
   std::vector<Slab> next;
   std::vector<SlabState> next_states;
   std::vector<std::uint32_t> moved(slabs.size());
@@ -224,7 +225,7 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
     const float mid = 0.5f * (slabs[s].theta_lo + slabs[s].theta_hi);
     for (const auto& [lo, hi] : {std::pair{slabs[s].theta_lo, mid}, std::pair{mid, slabs[s].theta_hi}}) {
       fresh.push_back({std::uint32_t(next.size()), 0});
-      next.push_back(make_slab(lo, hi, albedo, domain));
+      next.push_back(make_slab(lo, hi, survey.albedo, survey.field));
       next_states.push_back({});
     }
   }
@@ -236,8 +237,7 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
 
 }  // namespace
 
-void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albedo, const GrowthRules& rules,
-          const Host& host, std::uint64_t* evaluations) {
+void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rules) {
   std::vector<SlabState> states(slabs.size());
   std::vector<Task> tasks;
   for (std::uint32_t s = 0; s < slabs.size(); ++s) {
@@ -245,17 +245,23 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
     if (slabs[s].nodes.size() == 1 && slabs[s].nodes[0].leaf.cost == 0) tasks.push_back({s, 0});
     states[s].leaves = leaves_in_order(slabs[s]).size();
   }
+  int round = 0;
   for (bool busy = true; busy;) {
-    host.progress(rules.progress);
-    evaluate(slabs, tasks, field, rules, host, evaluations);
+    // How many rounds there will be, nobody knows: each brings the bar closer to the end of its stage.
+    survey.host.progress(lerp(1 - 1 / (1 + 0.05f * float(round++)), rules.progress, rules.progress_end));
+    evaluate(slabs, tasks, survey, rules);
     tasks.clear();
     busy = false;
+    if (survey.effort.spent()) return;
     std::vector<std::uint32_t> halved;
+    // Halved slabs begin again: what is left in the end belongs to their leaves.
+    const bool may_halve =
+        rules.split_slabs && double(survey.effort.evaluations) < 0.7 * double(survey.effort.limit);
     for (std::uint32_t s = 0; s < slabs.size(); ++s) {
-      const Step step = next_step(slabs[s], states[s], rules, albedo.relative_error);
+      const Step step = next_step(slabs[s], states[s], rules, may_halve, survey.albedo.relative_error);
       if (step.halve) halved.push_back(s);
       for (const std::uint32_t i : step.split) {
-        split_leaf(slabs[s], i, field.domain);
+        split_leaf(slabs[s], i, survey.field.domain);
         const std::uint32_t child = slabs[s].nodes[i].child;
         tasks.push_back({s, child}), tasks.push_back({s, child + 1});
       }
@@ -263,7 +269,7 @@ void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albed
       states[s].active = step.halve || !step.split.empty();
       busy = busy || states[s].active;
     }
-    if (!halved.empty()) halve(slabs, states, tasks, halved, albedo, field.domain);
+    if (!halved.empty()) halve(slabs, states, tasks, halved, survey);
   }
 }
 

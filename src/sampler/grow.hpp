@@ -23,11 +23,10 @@ struct GrowthRules {
   // T / albedo integrates to 1 in every slab. Where a tree that met its goal sees more or less than that, a
   // lobe runs between the points of its grids, and the coarsest leaves are halved until it is met.
   float mass_error = 0.004f;
-  float progress = 0;  // told to the host every round, a sign of life
+  float progress = 0, progress_end = 0;  // of the host's bar, where this growth begins and ends
 };
 
-// Grows until every slab meets the goal; slabs stay ordered by theta_o.
-void grow(std::vector<Slab>& slabs, const Field& field, const AlbedoTable& albedo, const GrowthRules& rules,
-          const Host& host, std::uint64_t* evaluations);
+// Grows until every slab meets the goal, or the effort is spent; slabs stay ordered by theta_o.
+void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rules);
 
 }  // namespace reflectree::detail

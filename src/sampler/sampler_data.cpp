@@ -20,6 +20,10 @@ const char* name_of(DomainKind kind) {
       return "back_vector";
     case DomainKind::stretched:
       return "stretched";
+    case DomainKind::mirror_vector:
+      return "mirror_vector";
+    case DomainKind::normal_vector:
+      return "normal_vector";
   }
   return "unknown";
 }
@@ -133,7 +137,7 @@ void validate(const SamplerData& data) {
     fail("the nodes do not span the hemisphere", "albedo table");
   }
   const Domain& d = data.domain;
-  if (std::uint8_t(d.kind) > std::uint8_t(DomainKind::stretched)) fail("unknown domain", "domain");
+  if (std::uint8_t(d.kind) > std::uint8_t(DomainKind::normal_vector)) fail("unknown domain", "domain");
   if (!(d.exponent >= 0 && d.exponent < 2)) fail("the exponent is not in [0, 2)", "domain");
 }
 

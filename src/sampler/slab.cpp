@@ -5,8 +5,8 @@
 
 namespace reflectree::detail {
 
-Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Domain& domain) {
-  constexpr int landmark_steps = 12;
+Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Field& field) {
+  constexpr int mark_steps = 12;
   Slab slab{theta_lo, theta_hi, {}, {}, {}, {Node{}}};
   // Just inside the borders, where a neighbour's kink does not reach.
   const auto cosine_at = [&](float t) {
@@ -16,16 +16,16 @@ Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const D
     slab.cos_theta_o[k] = cosine_at(0.5f * float(k));
     slab.albedo[k] = albedo_at(table, slab.cos_theta_o[k]);
   }
-  float travel[landmark_count];
-  for (int i = 0; i < landmark_count; ++i) {
-    const Vec2<float> a = landmark(domain, cosine_at(0), i), b = landmark(domain, cosine_at(1), i);
-    travel[i] = max(abs(a.x - b.x), abs(a.y - b.y));
-  }
-  for (int step = 0; step <= landmark_steps; ++step) {
-    const float t = float(step) / landmark_steps, c = cosine_at(t);
-    for (int i = 0; i < landmark_count; ++i) {
-      slab.landmarks.push_back(
-          {{c, landmark(domain, c, i)}, albedo_at(table, c), lerp(t, theta_lo, theta_hi), travel[i]});
+  const std::vector<Landmark> first = field.landmarks(cosine_at(0)), last = field.landmarks(cosine_at(1));
+  const auto travel = [&](std::size_t i) {
+    if (i >= first.size() || i >= last.size()) return 0.f;
+    return max(abs(first[i].p.x - last[i].p.x), abs(first[i].p.y - last[i].p.y));
+  };
+  for (int step = 0; step <= mark_steps; ++step) {
+    const float t = float(step) / mark_steps, c = cosine_at(t);
+    const std::vector<Landmark> here = field.landmarks(c);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      slab.marks.push_back({{c, here[i].p}, albedo_at(table, c), lerp(t, theta_lo, theta_hi), travel(i)});
     }
   }
   return slab;

@@ -21,17 +21,17 @@ struct Slab {
   float theta_lo, theta_hi;
   std::array<float, theta_nodes> cos_theta_o, albedo;
   // Landmarks along the slab: they move with theta_o.
-  struct Landmark {
+  struct Mark {
     FieldPoint point;
     float albedo, theta;
     float travel;  // how far it moves along the slab
   };
-  std::vector<Landmark> landmarks;
+  std::vector<Mark> marks;
   std::vector<Node> nodes;  // nodes[0] is the root
 };
 
 // Fills cosines and albedo of a slab with an unsplit root.
-Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& albedo, const Domain& domain);
+Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& albedo, const Field& field);
 // Leaves of a slab in preorder (indices into nodes).
 std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
 // Sum of a member over the leaves.

@@ -30,14 +30,13 @@ FieldPoint point_of(const Climber& c, const float at[3]) {
 }
 
 // T / (albedo q): what the leaf's bound must reach at p.
-float ratio_of(const AlbedoTable& albedo, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
-  const float a = albedo_at(albedo, p.cos_theta_o);
-  return a > 0 ? v / (a * shape(leaf, box, p.p)) : 0.f;
+float ratio_of(const Survey& survey, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
+  const float a = albedo_at(survey.albedo, p.cos_theta_o);
+  return a > 0 && !survey.at_jump(p.cos_theta_o) ? v / (a * shape(leaf, box, p.p)) : 0.f;
 }
 
 // Coordinate steps up and down each axis, all climbers in one batch; steps shrink where none helps.
-void climb(std::vector<Climber>& climbers, int rounds, const Field& field, const AlbedoTable& albedo,
-           const Host& host, std::uint64_t* evaluations) {
+void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
   std::vector<FieldPoint> points(climbers.size() * 6);
   std::vector<FieldValue> values(points.size());
   const auto moved = [](const Climber& c, int k, float out[3]) {
@@ -52,15 +51,14 @@ void climb(std::vector<Climber>& climbers, int rounds, const Field& field, const
         points[i * 6 + std::size_t(k)] = point_of(climbers[i], at);
       }
     }
-    eval_in_parallel(field, host, points, values);
-    *evaluations += points.size();
-    host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
+    survey.eval(points, values);
+    survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Climber& c = climbers[i];
         float r[6];
         for (int k = 0; k < 6; ++k) {
           const std::size_t j = i * 6 + std::size_t(k);
-          r[k] = ratio_of(albedo, *c.leaf, c.box, points[j], values[j].upper);
+          r[k] = ratio_of(survey, *c.leaf, c.box, points[j], values[j].upper);
         }
         // Along each axis move to the better side, if it is better than here; else come closer.
         const Climber before = c;
@@ -104,8 +102,8 @@ void raise(const Climber& c, float share) {
 
 }  // namespace
 
-void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Field& field,
-              const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations) {
+void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Survey& survey) {
+  const Field& field = survey.field;
   std::vector<Climber> climbers;
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     for (std::size_t i = first_new[s]; i < slabs[s].nodes.size(); ++i) {
@@ -115,11 +113,12 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
       Leaf& leaf = node.leaf;
       const Box box = box_of(leaf.cell, field.domain);
       climbers.push_back(start_at(slabs[s], leaf, grid_place(leaf.peak), 0, 0.2f, field.domain));
+      if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
       climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_theta, leaf.seen_at),
                                   leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));
     }
   }
-  climb(climbers, 7, field, albedo, host, evaluations);
+  climb(climbers, 7, survey);
   for (const Climber& c : climbers) raise(c, c.value * (1 + margin));
 }
 
@@ -135,9 +134,9 @@ struct ProbedLeaf {
 // batches and hands each leaf its ratios T / (albedo q), of the upper or the mean of mirror images:
 // visit(probed, points, ratios).
 template <class Count, class Visit>
-void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue::*image, const Field& field,
-                  const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations, Count&& count_of,
-                  Visit&& visit) {
+void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue::*image, const Survey& survey,
+                  Count&& count_of, Visit&& visit) {
+  const Field& field = survey.field;
   constexpr std::size_t batch = std::size_t(1) << 20U;
   std::vector<FieldPoint> points;
   std::vector<FieldValue> values;
@@ -145,14 +144,13 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
   std::vector<ProbedLeaf> probed;
   const auto flush = [&] {
     values.resize(points.size()), ratios.resize(points.size());
-    eval_in_parallel(field, host, points, values);
-    *evaluations += points.size();
-    host.parallel_for(probed.size(), [&](std::size_t begin, std::size_t end) {
+    survey.eval(points, values);
+    survey.host.parallel_for(probed.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const Leaf& leaf = slabs[probed[k].slab].nodes[probed[k].node].leaf;
         const Box box = box_of(leaf.cell, field.domain);
         for (std::size_t i = probed[k].first; i < probed[k].first + probed[k].count; ++i) {
-          ratios[i] = ratio_of(albedo, leaf, box, points[i], values[i].*image);
+          ratios[i] = ratio_of(survey, leaf, box, points[i], values[i].*image);
         }
       }
     });
@@ -178,9 +176,9 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
 
 }  // namespace
 
-void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Field& field,
-           const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations,
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
            std::vector<float>& overshoot) {
+  const Field& field = survey.field;
   std::vector<double> found(slabs.size(), 0), mean_cost;
   for (const Slab& slab : slabs) {
     double total = 0;
@@ -207,21 +205,22 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
       if (ratios[i] > worst) worst = ratios[i], where = i;
     }
     if (!(excess > 0)) return;
+    if (survey.towers && worst > 8 * leaf.share) survey.towers->push_back(points[where]);
     found[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
     const Box box = box_of(leaf.cell, field.domain);
     const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
     climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
   };
-  probe_leaves(slabs, seed, &FieldValue::upper, field, albedo, host, evaluations, count, visit);
-  climb(climbers, 6, field, albedo, host, evaluations);
+  probe_leaves(slabs, seed, &FieldValue::upper, survey, count, visit);
+  climb(climbers, 6, survey);
   for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->share + margin * c.value);
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     if (overshoot[s] > accepted) overshoot[s] = float(found[s]);
   }
 }
 
-void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Field& field,
-                   const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations) {
+void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey) {
+  const Field& field = survey.field;
   constexpr double doubtful = 1.5;  // more than the scatter of honest leaves
   const auto count = [](const Slab& slab, std::uint32_t i) {
     return std::size_t(64 + 8192 * area_share(slab.nodes[i].leaf.cell));
@@ -248,7 +247,7 @@ void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Field& fi
     leaf.share = max(leaf.share, float(std::sqrt(square)));
     leaf.split_x = close_in_along_x(leaf);
   };
-  probe_leaves(slabs, seed, &FieldValue::mean, field, albedo, host, evaluations, count, visit);
+  probe_leaves(slabs, seed, &FieldValue::mean, survey, count, visit);
 }
 
 }  // namespace reflectree::detail

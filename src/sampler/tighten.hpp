@@ -11,19 +11,16 @@ namespace reflectree::detail {
 
 // Raises share and cost of the leaves of `slabs` from node index `first_new[s]` on, by local maximisation
 // in (theta_o, x, y), and adds the margin for what it may still miss.
-void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Field& field,
-              const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
+void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Survey& survey);
 
 // Random probes, `per_leaf` on average and in proportion to the leaf's cost, in the slabs whose mass of
 // overshoot (one a slab) is above `accepted`; every overshoot raises its leaf past the value found. Writes
 // the mass seen, before the raise, to `overshoot`.
-void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Field& field,
-           const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations,
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
            std::vector<float>& overshoot);
 
 // Random probes in every leaf of one-shot trees: where they show, beyond doubt, a larger root mean square
 // than the grid did, the leaf's cost is raised to it, so that growth goes on there.
-void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Field& field,
-                   const AlbedoTable& albedo, const Host& host, std::uint64_t* evaluations);
+void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey);
 
 }  // namespace reflectree::detail

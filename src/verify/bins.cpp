@@ -114,7 +114,8 @@ std::size_t Bins::find(Direction wi) const {
 
 Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& options, const Host& host) {
   const Vec3<double> w = normalize(Vec3<double>{wo.x, wo.y, wo.z});
-  Bins bins{wo, w.z > 0 ? choose_chart(f, w) : HemisphereChart({0, 0, 1}), {}, {}, {}, 0, 0};
+  Bins bins{wo, HemisphereChart({0, 0, 1}), {}, {}, {}, 0, 0};
+  if (w.z > 0) bins.chart = options.centre ? HemisphereChart(*options.centre) : choose_chart(f, w);
   if (!(w.z > 0)) return bins;
   const Integrand integrand = chart_integrand(f, w, bins.chart);
 

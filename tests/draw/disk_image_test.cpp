@@ -125,7 +125,8 @@ TEST(TreeImage, ASlopeTiltsTheLeaf) {
 INSTANTIATE_TEST_SUITE_P(Domains, TreeImages,
                          testing::Values(DomainKind::projected_disk, DomainKind::equal_area,
                                          DomainKind::half_vector, DomainKind::back_vector,
-                                         DomainKind::stretched));
+                                         DomainKind::stretched, DomainKind::mirror_vector,
+                                         DomainKind::normal_vector));
 
 }  // namespace
 }  // namespace reflectree::draw

@@ -132,7 +132,7 @@ TEST(Lanes, TheOneFormulaOfEachModelServesLanes) {
 TEST(Lanes, PointsAreLiftedAsByFloats) {
   Pcg32 u(13);
   for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
-                                DomainKind::back_vector, DomainKind::stretched}) {
+                                DomainKind::back_vector, DomainKind::stretched, DomainKind::mirror_vector, DomainKind::normal_vector}) {
     const Domain domain{kind, false, 1.5f};
     int different = 0;
     for (int round = 0; round < 300; ++round) {

@@ -28,6 +28,7 @@ struct AbcMicrofacet {
   }
   BrdfTraits traits() const {
     BrdfTraits traits;
+    traits.isotropic_by_formula = true;
     traits.name = name;
     return traits;
   }

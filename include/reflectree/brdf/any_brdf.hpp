@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reflectree/brdf/brdf.hpp"
+#include "reflectree/error.hpp"
 
 namespace reflectree {
 
@@ -19,6 +20,14 @@ concept ChannelBatchBrdf = Brdf<F> &&
   f.eval(g, out);
 };
 
+namespace detail {
+[[noreturn]] inline void throw_channels(int returned, const BrdfTraits& traits) {
+  throw Error("the BRDF returned " + std::to_string(returned) + " channels where it has " +
+                  std::to_string(traits.channels),
+              traits.name, "return the same number for all directions; if it has traits(), say it there");
+}
+}  // namespace detail
+
 class AnyBrdf {
  public:
   template <class F>
@@ -27,7 +36,7 @@ class AnyBrdf {
   // The same with a wrong result: one readable line instead of a page of constraints.
   template <class F>
   requires(!Brdf<F>) && std::is_invocable_v<const F&, Direction, Direction> AnyBrdf(const F&) {
-    static_assert(std::is_void_v<F>, "a BRDF returns float, Rgb or Spectrum");
+    static_assert(std::is_void_v<F>, "a BRDF returns a number, Rgb, Spectrum or std::array");
   }
 
   const BrdfTraits& traits() const { return self_->traits; }
@@ -58,9 +67,18 @@ class AnyBrdf {
   template <class F>
   struct Model final : Interface {
     F f;
-    explicit Model(F function) : f(std::move(function)) { this->traits = traits_of(f); }
+    explicit Model(F function) : f(std::move(function)) {
+      this->traits = traits_of(f);
+      if (this->traits.channels < 1 || this->traits.channels > max_channels) {
+        throw Error("the BRDF has " + std::to_string(this->traits.channels) + " channels", this->traits.name,
+                    "give it 1 to " + std::to_string(max_channels));
+      }
+    }
 
     void store(const ValueOf<F>& value, float* out) const {
+      if constexpr (std::is_same_v<ValueOf<F>, Spectrum>) {
+        if (value.channels() != this->traits.channels) detail::throw_channels(value.channels(), this->traits);
+      }
       for (int c = 0; c < this->traits.channels; ++c) out[c] = channel(value, c);
     }
     void eval(std::span<const Direction> wo, std::span<const Direction> wi,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A BRDF is anything callable: f(wo, wi), or f(geometry) for a model that wants the shading geometry.
-// It returns float, Rgb or Spectrum in sr^-1, *without* the cosine, and is safe to call concurrently
-// unless its traits say otherwise. Refinements are detected, never demanded:
-//   f.traits()                 what is known about f (knots, channels, symmetry, threads, name)
+// It returns a number, Rgb, Spectrum or std::array in sr^-1, *without* the cosine, and is safe to call
+// concurrently unless its traits say otherwise. Refinements are detected, never demanded:
+//   f.traits()                 what is known about f (knots, lobes, channels, symmetry, threads, name)
 //   f.eval(wo, wi, out)        batches over spans; both directions vary
 #pragma once
 
@@ -17,23 +17,26 @@
 
 namespace reflectree {
 
+// clang-format off
 template <class F>
-concept DirectionBrdf = std::is_invocable_v<const F&, Direction, Direction> &&
-    BrdfValue<std::remove_cvref_t<std::invoke_result_t<const F&, Direction, Direction>>>;
+concept DirectionBrdf =
+    std::is_invocable_v<const F&, Direction, Direction> &&
+    BrdfResult<std::remove_cvref_t<std::invoke_result_t<const F&, Direction, Direction>>>;
 template <class F>
-concept GeometryBrdf = std::is_invocable_v < const F&,
-        const ShadingGeometry<float>
-& > &&BrdfValue<std::remove_cvref_t<std::invoke_result_t<const F&, const ShadingGeometry<float>&>>>;
+concept GeometryBrdf =
+    std::is_invocable_v<const F&, const ShadingGeometry<float>&> &&
+    BrdfResult<std::remove_cvref_t<std::invoke_result_t<const F&, const ShadingGeometry<float>&>>>;
 template <class F>
 concept Brdf = GeometryBrdf<F> || DirectionBrdf<F>;
+// clang-format on
 
 namespace detail {
 template <class F>
 auto call(const F& f, const ShadingGeometry<float>& g) {
   if constexpr (GeometryBrdf<F>) {
-    return f(g);
+    return as_value(f(g));
   } else {
-    return f(g.wo, g.wi);
+    return as_value(f(g.wo, g.wi));
   }
 }
 }  // namespace detail
@@ -47,23 +50,42 @@ ValueOf<F> eval(const F& f, const ShadingGeometry<float>& g) {
   return detail::call(f, g);
 }
 
+namespace detail {
+// Zero in as many channels as f has; a function of run-time channels is asked, at the normal.
+template <class F>
+ValueOf<F> zero_of(const F& f) {
+  if constexpr (std::is_same_v<ValueOf<F>, Spectrum>) {
+    constexpr Direction normal{0, 0, 1};
+    return zero_like(call(f, ShadingGeometry<float>{normal, normal, normal, 1, 1, 1, 1}));
+  } else {
+    return {};
+  }
+}
+}  // namespace detail
+
 // f(wo, wi) in sr^-1; zero unless both directions lie above the surface.
 template <Brdf F>
 ValueOf<F> eval(const F& f, Direction wo, Direction wi) {
+  if (!(wo.z > 0 && wi.z > 0)) return detail::zero_of(f);
   if constexpr (GeometryBrdf<F>) {
-    if (wo.z > 0 && wi.z > 0) return f(shading_geometry(wo, wi));
-    return zero_like(f(shading_geometry(Direction{0, 0, 1}, Direction{0, 0, 1})));
+    return as_value(f(shading_geometry(wo, wi)));
   } else {
-    if (wo.z > 0 && wi.z > 0) return f(wo, wi);
-    return zero_like(f(Direction{0, 0, 1}, Direction{0, 0, 1}));
+    return as_value(f(wo, wi));
   }
 }
+
+// A lobe narrower than what a builder sees by itself (a hundredth of a radian): it is looked at closely.
+struct SharpLobe {
+  Direction centre;  // wi, unit
+  float width;       // radians, about: where f has fallen to a third
+};
 
 // What a function may tell about itself. The builder verifies what it can.
 struct BrdfTraits {
   std::string name = "lambda";  // canonical material text where there is one
   int channels = 3;
-  bool isotropic = true;             // depends on phi_o - phi_i only
+  bool isotropic = true;             // false: known to depend on more than phi_o - phi_i
+  bool isotropic_by_formula = false; // may be evaluated with both directions turned about the normal
   bool concurrent = true;            // false: called from one thread (a Python callback)
   std::vector<float> theta_o_knots;  // radians: elevations where f has kinks in theta_o
   std::vector<float> theta_d_knots;  // radians: difference angles where f has kinks; theta_o meets them at a
@@ -71,6 +93,8 @@ struct BrdfTraits {
   // A factor of f that depends on theta_o (radians) alone, > 0; empty: none known. Albedo tables interpolate
   // what is left of the albedo without it, so that its kinks cost no integral.
   std::function<double(double)> theta_o_factor;
+  // The sharp lobes of f for a viewer wo; empty: none known. Only hints: a lobe told of wrongly costs time.
+  std::function<std::vector<SharpLobe>(Direction wo)> sharp;
 };
 
 template <class F>
@@ -88,7 +112,41 @@ BrdfTraits traits_of(const F& f) {
   }
   if constexpr (std::is_same_v<ValueOf<F>, float>) traits.channels = 1;
   if constexpr (std::is_same_v<ValueOf<F>, Rgb>) traits.channels = 3;
+  if constexpr (std::is_same_v<ValueOf<F>, Spectrum> && !requires { f.traits(); }) {
+    traits.channels = channels_of(detail::zero_of(f));
+  }
   return traits;
+}
+
+// Whether f says that it may be evaluated with both directions turned about the normal.
+template <Brdf F>
+bool is_isotropic_by_formula(const F& f) {
+  if constexpr (requires {
+                  { f.traits() } -> std::convertible_to<BrdfTraits>;
+                }) {
+    return f.traits().isotropic_by_formula;
+  } else {
+    return false;
+  }
+}
+
+// A function that writes its channels: write(wo, wi, out), for values that live in arrays of its own.
+//   channel_brdf(31, [](Direction wo, Direction wi, std::span<float> out) { ... })
+template <class Write>
+requires std::is_invocable_v<const Write&, Direction, Direction, std::span<float>>
+struct ChannelBrdf {
+  int channels;
+  Write write;
+  Spectrum operator()(Direction wo, Direction wi) const {
+    Spectrum value(channels);
+    write(wo, wi, std::span<float>(value.data(), std::size_t(channels)));
+    return value;
+  }
+};
+// channels: 1 to max_channels.
+template <class Write>
+ChannelBrdf<Write> channel_brdf(int channels, Write write) {
+  return {channels, std::move(write)};
 }
 
 }  // namespace reflectree

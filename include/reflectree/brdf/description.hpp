@@ -70,7 +70,7 @@ BrdfTraits model_traits(const M& model, bool isotropic = true) {
   }
   BrdfTraits traits;
   traits.name = model_text(description.name, names, values);
-  traits.isotropic = isotropic;
+  traits.isotropic = traits.isotropic_by_formula = isotropic;
   return traits;
 }
 

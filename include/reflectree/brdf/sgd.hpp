@@ -38,6 +38,7 @@ struct Sgd {
   }
   BrdfTraits traits() const {
     BrdfTraits traits;
+    traits.isotropic_by_formula = true;
     traits.name = name;
     return traits;
   }

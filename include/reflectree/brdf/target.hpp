@@ -14,13 +14,18 @@ enum class TargetKind : std::uint8_t { norm, luminance, maximum, channel };
 struct Target {
   TargetKind kind = TargetKind::norm;
   std::uint16_t index = 0;  // which channel, for TargetKind::channel
+  // A power of two that brings values whose squares would leave the range of float near 1; the builder finds
+  // it. Targets and their albedo are in these units; pdf and weight do not depend on it.
+  float scale = 1;
   friend bool operator==(const Target&, const Target&) = default;
 
-  float operator()(float f) const { return f; }
-  float operator()(const Rgb& f) const { return kind == TargetKind::norm ? norm(f) : mixed(&f.r, 3); }
+  float operator()(float f) const { return scale * f; }
+  float operator()(const Rgb& f) const {
+    return kind == TargetKind::norm ? norm(scale * f) : (*this)(&f.r, 3);
+  }
   float operator()(const Spectrum& f) const { return (*this)(f.data(), f.channels()); }
   float operator()(const float* f, int channels) const {
-    if (channels == 1) return f[0];
+    if (channels == 1) return scale * f[0];
     return kind == TargetKind::norm ? norm(f, channels) : mixed(f, channels);
   }
 
@@ -30,9 +35,9 @@ struct Target {
   }
 
  private:
-  static float norm(const float* f, int channels) {
+  float norm(const float* f, int channels) const {
     float sum = 0;
-    for (int c = 0; c < channels; ++c) sum += f[c] * f[c];
+    for (int c = 0; c < channels; ++c) sum += sqr(scale * f[c]);
     return sqrt(sum);
   }
   float mixed(const float* f, int channels) const {
@@ -46,7 +51,7 @@ struct Target {
     } else {
       t = f[index < channels ? index : channels - 1];
     }
-    return 0.99f * t + 0.01f * norm(f, channels);
+    return 0.99f * (scale * t) + 0.01f * norm(f, channels);
   }
 };
 

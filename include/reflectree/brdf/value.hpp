@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a BRDF returns: float, Rgb, or Spectrum (N channels known at run time). Unit sr^-1.
+// What a BRDF returns: float, Rgb, or Spectrum (N channels known at run time). Unit sr^-1. Any arithmetic
+// result counts as float, std::array<T, 3> as Rgb, another std::array as Spectrum.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 namespace reflectree {
 
@@ -57,6 +59,31 @@ class Spectrum {
 
 template <class V>
 concept BrdfValue = std::same_as<V, float> || std::same_as<V, Rgb> || std::same_as<V, Spectrum>;
+
+// What a user's function returned, as one of the three.
+template <BrdfValue V>
+const V& as_value(const V& v) {
+  return v;
+}
+template <class A>
+requires(std::is_arithmetic_v<A> && !std::same_as<A, float>) float as_value(A v) {
+  return static_cast<float>(v);
+}
+template <class A, std::size_t n>
+requires(std::is_arithmetic_v<A>&& n >= 1 && n <= std::size_t(max_channels)) auto as_value(
+    const std::array<A, n>& v) {
+  if constexpr (n == 3) {
+    return Rgb{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  } else {
+    Spectrum s{int(n)};
+    for (std::size_t c = 0; c < n; ++c) s[int(c)] = static_cast<float>(v[c]);
+    return s;
+  }
+}
+template <class R>
+concept BrdfResult = requires(const R& r) {
+  as_value(r);
+};
 
 inline int channels_of(float) { return 1; }
 inline int channels_of(const Rgb&) { return 3; }

@@ -17,10 +17,14 @@ struct BuildOptions {
   float albedo_error = 1e-4f;       // relative
   std::optional<Domain> domain;     // default: the cheapest, found by trial
   std::uint64_t seed = 1;
+  // Of f. A build that would need more ends with what it has, and report.notes says what is missing.
+  std::uint64_t max_evaluations = 240'000'000;
 };
 
-// Throws Error for a function that is negative, NaN, infinite, or differs between two calls;
-// Cancelled when the host says so. The result does not depend on the host's threads.
+// Throws Error for a function that is negative, NaN, infinite, differs between two calls, changes when both
+// directions turn about the normal, or hides lobes that even a second look does not resolve; and for options
+// out of range. Cancelled when the host says so. What is promised and not kept is in report.notes, in words.
+// The result does not depend on the host's threads.
 SamplerData build(const AnyBrdf& f, const BuildOptions& options = {}, const Host& host = {});
 
 }  // namespace reflectree

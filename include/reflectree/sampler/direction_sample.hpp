@@ -26,7 +26,7 @@ struct DirectionSample {
   std::uint32_t flags = sample_reflection;
 };
 
-// A direction drawn without the function: its weight is scale * f(geometry), in the frame where wo has no y.
+// A direction drawn without the function: its weight is scale * f(geometry).
 struct Proposal {
   Direction wi;
   float pdf;  // per solid angle

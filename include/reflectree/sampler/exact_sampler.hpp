@@ -24,9 +24,11 @@ class ExactSampler {
   static constexpr int max_trials = 256;
 
   ExactSampler(F f, std::shared_ptr<const PackedSampler> packed)
-      : f_(std::move(f)), packed_(std::move(packed)) {}
+      : f_(std::move(f)), packed_(std::move(packed)), turned_(is_isotropic_by_formula(f_)) {}
 
   const F& brdf() const { return f_; }
+  // Whether f is evaluated in the frame where wo has no y, rather than in the caller's.
+  bool evaluates_turned() const { return turned_; }
   const PackedSampler& packed() const { return *packed_; }
 
   template <RandomBits U, class Stats = NoStatistics>
@@ -88,7 +90,8 @@ class ExactSampler {
   float pdf_disk(Direction wo, Direction wi) const {
     Incidence in;
     if (!(wi.z > 0) || !find_incidence(*packed_, wo, in)) return 0;
-    const Value value = eval(f_, shading_geometry(in.wo, to_incidence(in, wi)));
+    const Value value =
+        eval(f_, turned_ ? shading_geometry(in.wo, to_incidence(in, wi)) : shading_geometry(wo, wi));
     return packed_->target(value) / in.albedo;
   }
   // a(wo) of the target, from the table; 0 for no sample.
@@ -126,7 +129,7 @@ class ExactSampler {
     Candidate c;
     c.point = lift(domain, in.wo, at.p, domain.half && coin);
     c.majorant = at.height;
-    c.value = eval(f_, c.point.geometry);
+    c.value = eval(f_, known_geometry(in, c.point.geometry, turned_));
     c.target = packed_->target(c.value) * c.point.projected_area;
     return c;
   }
@@ -147,6 +150,7 @@ class ExactSampler {
 
   F f_;
   std::shared_ptr<const PackedSampler> packed_;
+  bool turned_;
 };
 
 }  // namespace reflectree

@@ -14,6 +14,8 @@ struct Host {
       parallel_for =
           [](std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) { body(0, n); };
   std::function<void(float fraction)> progress = [](float) {};
+  // What is done from now on, in a few words: "growing exact trees".
+  std::function<void(const char* words)> stage = [](const char*) {};
   std::function<bool()> cancelled = [] { return false; };
 };
 

@@ -25,6 +25,8 @@ struct Located {
 };
 Located locate(const PackedSampler& packed, const PackedSlab& slab, Vec2<float> p);
 
+REFLECTREE_INLINE bool are_uniforms(double u1, double u2) { return u1 >= 0 && u1 <= 1 && u2 >= 0 && u2 <= 1; }
+
 }  // namespace detail
 
 template <Brdf F>
@@ -33,9 +35,11 @@ class OneShotSampler {
   using Value = ValueOf<F>;
 
   OneShotSampler(F f, std::shared_ptr<const PackedSampler> packed)
-      : f_(std::move(f)), packed_(std::move(packed)) {}
+      : f_(std::move(f)), packed_(std::move(packed)), turned_(is_isotropic_by_formula(f_)) {}
 
   const F& brdf() const { return f_; }
+  // Whether f is evaluated in the frame where wo has no y, rather than in the caller's.
+  bool evaluates_turned() const { return turned_; }
   const PackedSampler& packed() const { return *packed_; }
 
   // By alias table, from 128 random bits.
@@ -74,10 +78,11 @@ class OneShotSampler {
     return filled;
   }
 
-  // By monotone descent from two uniforms in [0, 1): stratified and QMC points stay stratified.
+  // By monotone descent from two uniforms in [0, 1): stratified and QMC points stay stratified. Uniforms outside
+  // of [0, 1] are no sample.
   std::optional<DirectionSample<Value>> sample(Direction wo, double u1, double u2) const {
     Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    if (!detail::are_uniforms(u1, u2) || !find_incidence(*packed_, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
     const bool half = packed_->domain.half, below = half && u2 < 0.5;
     if (half) u2 = below ? 1 - 2 * u2 : 2 * u2 - 1;  // continuous across the plane of incidence
@@ -164,12 +169,13 @@ class OneShotSampler {
                                       const detail::PointInLeaf& at, bool mirrored) const {
     const DomainPoint point = lift(domain, in.wo, at.p, mirrored);
     const float pdf_disk = at.height / point.projected_area, inverse = point.projected_area / at.height;
-    return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i, point.geometry,
-            inverse};
+    return {from_incidence(in, point.geometry.wi), pdf_disk * point.geometry.cos_theta_i,
+            known_geometry(in, point.geometry, turned_), inverse};
   }
 
   F f_;
   std::shared_ptr<const PackedSampler> packed_;
+  bool turned_;
 };
 
 }  // namespace reflectree

@@ -49,7 +49,8 @@ struct DensityTree : Tree {
 struct AlbedoTable {
   std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
   std::vector<float> albedo;
-  float relative_error = 0;  // stated bound on the error of quadrature and interpolation
+  // Stated bound on the error of quadrature and interpolation up to 89.9 degrees; beyond, ten times as large.
+  float relative_error = 0;
   friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
@@ -67,6 +68,8 @@ struct BuildReport {
   float one_shot_variance = 0;  // median over slabs of the relative variance
   float asymmetry = 0;          // mean |T - mirrored T| / mean T
   std::uint64_t evaluations = 0;
+  // What was promised and is not kept, where, and what to do: a sentence each; none as a rule.
+  std::vector<std::string> notes;
   friend bool operator==(const BuildReport&, const BuildReport&) = default;
 };
 

@@ -70,8 +70,9 @@ class BlockValues<F> {
   Rgb value(std::size_t k) const { return {channel_[0][k], channel_[1][k], channel_[2][k]}; }
   REFLECTREE_INLINE Lanes target(std::size_t k) const {
     if (target_.kind == TargetKind::norm) {
-      return Target::norm(RgbT<Lanes>{Lanes::load(channel_[0] + k), Lanes::load(channel_[1] + k),
-                                      Lanes::load(channel_[2] + k)});
+      const Lanes scale(target_.scale);
+      return Target::norm(scale * RgbT<Lanes>{Lanes::load(channel_[0] + k), Lanes::load(channel_[1] + k),
+                                              Lanes::load(channel_[2] + k)});
     }
     float t[lane_count];
     for (std::size_t i = 0; i < lane_count; ++i) t[i] = target_(value(k + i));

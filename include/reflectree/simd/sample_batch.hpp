@@ -60,7 +60,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
                   std::span<DirectionSample<ValueOf<F>>> out) {
   assert(out.size() == wo.size());
   const PackedSampler& packed = sampler.packed();
-  detail::TrialBlock block;
+  detail::TrialBlock block(sampler.evaluates_turned());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
     for (std::size_t i = 0; i < wo.size();) {
@@ -88,7 +88,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
   const bool half = packed.domain.half;
-  detail::TrialBlock block;
+  detail::TrialBlock block(sampler.evaluates_turned());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   constexpr std::size_t side_by_side = 8;
   struct Started {
@@ -105,7 +105,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
         std::size_t n = 0;
         for (; i < wo.size() && n < side_by_side; ++i) {
           Started& s = started[n];
-          if (!find_incidence(packed, wo[i], s.in)) {
+          if (!detail::are_uniforms(points[i].x, points[i].y) || !find_incidence(packed, wo[i], s.in)) {
             detail::store_no_sample(values.zero(), out[i]);
             continue;
           }
@@ -137,7 +137,7 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
   assert(out.size() == wo.size());
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
-  detail::TrialBlock b;
+  detail::TrialBlock b(sampler.evaluates_turned());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   struct Pending {
     Incidence in;

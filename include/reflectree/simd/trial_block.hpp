@@ -30,6 +30,9 @@ struct alignas(64) TrialBlock {
     across_y,       // uniforms or places across the leaf
     turn,           // sign bit: of the coin of half domains
     uniform,        // of the acceptance
+    known_x,
+    known_y,
+    known_z,        // wo as the caller gave it, where keep_known
     chosen_fields,  // above: chosen; below: computed
     wi_x = chosen_fields,
     wi_y,
@@ -44,6 +47,9 @@ struct alignas(64) TrialBlock {
   float at[field_count][block_size];
   std::uint32_t index[block_size];  // in the batch
   std::size_t count = 0;
+  bool keep_known;  // f is evaluated in the caller's frame (known_geometry in incidence.hpp)
+
+  explicit TrialBlock(bool evaluates_turned) : keep_known(!evaluates_turned) {}
 
   bool full() const { return count == block_size; }
   Lanes lanes(Field field, std::size_t k) const { return Lanes::load(at[field] + k); }
@@ -58,6 +64,7 @@ struct alignas(64) TrialBlock {
     at[cos_phi][k] = in.cos_phi;
     at[sin_phi][k] = in.sin_phi;
     at[albedo][k] = in.albedo;
+    if (keep_known) at[known_x][k] = in.known.x, at[known_y][k] = in.known.y, at[known_z][k] = in.known.z;
     const LeafCell<float> cell = unpack(leaf, half);
     at[x][k] = cell.x;
     at[y][k] = cell.y;
@@ -108,12 +115,23 @@ REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Value
         lift_point(domain, wo, Vec2<Lanes>{at.p.x, flip_sign(at.p.y, lanes(Field::turn))});
     const Vec3<Lanes>& wi = point.geometry.wi;
     const Lanes cos_phi = lanes(Field::cos_phi), sin_phi = lanes(Field::sin_phi);
-    b.set(Field::wi_x, k, wi.x * cos_phi - wi.y * sin_phi);
-    b.set(Field::wi_y, k, wi.x * sin_phi + wi.y * cos_phi);
-    b.set(Field::wi_z, k, wi.z);
+    const auto turn_back = [&](const Vec3<Lanes>& w) {
+      return Vec3<Lanes>{w.x * cos_phi - w.y * sin_phi, w.x * sin_phi + w.y * cos_phi, w.z};
+    };
+    const Vec3<Lanes> drawn = turn_back(wi);
+    b.set(Field::wi_x, k, drawn.x);
+    b.set(Field::wi_y, k, drawn.y);
+    b.set(Field::wi_z, k, drawn.z);
     b.set(Field::projected_area, k, point.projected_area);
     b.set(Field::majorant, k, at.height);
-    values.evaluate(k, point.geometry);
+    if (b.keep_known) {
+      ShadingGeometry<Lanes> g = point.geometry;
+      g.wo = {lanes(Field::known_x), lanes(Field::known_y), lanes(Field::known_z)};
+      g.wi = drawn, g.wh = turn_back(g.wh);
+      values.evaluate(k, g);
+    } else {
+      values.evaluate(k, point.geometry);
+    }
   }
   values.finish(b.count);
 }

@@ -3,6 +3,7 @@
 // halved at the median mass, then the mass of every bin by a cubature of its own.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "reflectree/sampler/host.hpp"
@@ -29,6 +30,7 @@ struct Bins {
 
 struct BinOptions {
   int count = 400;
+  std::optional<Vec3<double>> centre;  // of the chart; default: where a search finds t cos_i highest
   double tolerance = 3e-4;  // relative, of each mass; biases chi-square by less than samples * tolerance^2
 };
 

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "reflectree/error.hpp"
+#include "refuse.hpp"
+
+namespace reflectree::detail {
+
+namespace {
+
+constexpr double degrees = 180 / pi_v<double>;
+
+__attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
+  char buffer[400];
+  va_list list;
+  va_start(list, format);
+  std::vsnprintf(buffer, sizeof buffer, format, list);
+  va_end(list);
+  return buffer;
+}
+
+float distance(Direction a, Direction b) {
+  const Direction d = a - b;
+  return sqrt(dot(d, d));
+}
+
+// The slab of the largest value of `what`, and it.
+template <class What>
+std::pair<const Slab*, double> worst_of(const std::vector<Slab>& slabs, const What& what) {
+  std::pair<const Slab*, double> worst{nullptr, 0};
+  for (const Slab& slab : slabs) {
+    const double value = what(slab);
+    if (value > worst.second) worst = {&slab, value};
+  }
+  return worst;
+}
+
+}  // namespace
+
+bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExamination& seen) {
+  constexpr std::size_t most = 16;
+  bool added = false;
+  std::vector<Surprise> surprises = seen.surprises;
+  for (const FieldPoint& p : seen.towers) {
+    surprises.push_back({p.cos_theta_o, lift(field.domain, wo_from_cosine(p.cos_theta_o), p.p).geometry.wi, 1});
+  }
+  for (const Surprise& surprise : surprises) {
+    if (ridges.size() >= most) break;
+    const float theta = acos(min(surprise.cos_theta_o, 1.f));
+    const bool known = std::any_of(ridges.begin(), ridges.end(), [&](const Ridge& ridge) {
+      const auto lobe = ridge.at(theta);
+      return lobe && distance(lobe->centre, surprise.wi) < 8 * lobe->width;
+    });
+    if (known) continue;
+    ridges.push_back(follow_ridge(field.f, field.target, theta, surprise.wi));
+    added = true;
+  }
+  return added;
+}
+
+namespace {
+
+bool mean_disagrees(const CrossExamination& seen, const AlbedoTable& albedo) {
+  constexpr double standard_errors = 6, rounding = 1e-3;
+  const double allowed = standard_errors * seen.by_bounds_error + double(albedo.relative_error) + rounding;
+  return std::abs(seen.by_bounds - 1) > allowed;
+}
+
+}  // namespace
+
+bool disagrees(const CrossExamination& seen, const AlbedoTable& albedo) {
+  return !seen.surprises.empty() || mean_disagrees(seen, albedo);
+}
+
+void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field) {
+  const std::string& name = field.f.traits().name;
+  const char* mend = "tell of its sharp lobes by traits().sharp, or smooth it";
+  if (!seen.surprises.empty()) {
+    const Surprise& s = seen.surprises.front();
+    const std::string where = name + " at " + describe(wo_from_cosine(s.cos_theta_o), s.wi);
+    if (!std::isfinite(s.ratio)) throw Error("the function is not 0 where its albedo was found to be 0", where, mend);
+    throw Error(text("the function is %.3g times its bound: a lobe that no grid resolves", double(s.ratio)), where, mend);
+  }
+  if (mean_disagrees(seen, albedo)) {
+    throw Error(text("draws from the bounds see %.4f +- %.4f of the albedo", seen.by_bounds, seen.by_bounds_error), name,
+                mend);
+  }
+}
+
+std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
+                                  const AlbedoTable& albedo, const BuildOptions& options, bool spent) {
+  std::vector<std::string> notes;
+  const bool black = std::all_of(albedo.albedo.begin(), albedo.albedo.end(), [](float a) { return a == 0; });
+  if (black) notes.push_back("the function is 0 wherever it was looked at: there is no sample for any wo");
+  const auto range = [](const Slab& slab) {
+    return text("theta_o %.4g to %.4g degrees", double(slab.theta_lo) * degrees, double(slab.theta_hi) * degrees);
+  };
+  const std::string end = spent ? text("the budget of %.3g evaluations is used up: raise max_evaluations",
+                                       double(options.max_evaluations))
+                                : "leaves cannot get smaller: the function is too steep there";
+  const auto [dear, trials] = worst_of(exact, [](const Slab& s) { return double(total(s, &Leaf::cost)); });
+  if (dear && trials > 1.0002 * double(options.expected_trials)) {
+    notes.push_back(text("exact mode takes %.3g trials on average at %s, where %.3g were asked for; ", trials,
+                         range(*dear).c_str(), double(options.expected_trials)) +
+                    end);
+  }
+  const auto [noisy, variance] = worst_of(one_shot, [](const Slab& slab) {
+    const auto ideal = double(total(slab, &Leaf::ideal));
+    return ideal > 0 ? sqr(double(total(slab, &Leaf::cost)) / ideal) - 1 : 0.;
+  });
+  if (noisy && variance > 10 * double(options.one_shot_variance)) {
+    notes.push_back(text("one-shot weights have a relative variance of %.2g at %s, where %.2g was asked for; ", variance,
+                         range(*noisy).c_str(), double(options.one_shot_variance)) +
+                    end);
+  }
+  if (albedo.relative_error > 1.001f * options.albedo_error) {
+    notes.push_back(text("the albedo, and with it pdf and weight of exact mode, is known to %.2g, where %.2g was asked "
+                         "for; steps or rounding in the function hide the rest",
+                         double(albedo.relative_error), double(options.albedo_error)));
+  }
+  return notes;
+}
+
+}  // namespace reflectree::detail

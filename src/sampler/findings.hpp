@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What follows from a cross-examination, and what a build has to say of itself in the end.
+#pragma once
+
+#include <string>
+
+#include "cross_examine.hpp"
+#include "reflectree/sampler/build.hpp"
+
+namespace reflectree::detail {
+
+// Follows the lobes at which f surprised; false if none is new.
+bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExamination& seen);
+// Whether trees and albedo contradict what was seen of f.
+bool disagrees(const CrossExamination& seen, const AlbedoTable& albedo);
+// Throws Error where trees and albedo contradict what was seen of f: a sampler of them would be wrong.
+void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field);
+// What was promised and is not kept.
+std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
+                                  const AlbedoTable& albedo, const BuildOptions& options, bool spent);
+
+}  // namespace reflectree::detail
