@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reflectree/error.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
@@ -29,6 +30,7 @@ void compute_normals(Mesh& mesh) {
 }
 
 Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool flip_v) {
+  refuse_recognised(bytes, path, "name an OBJ mesh");
   tinyobj::ObjReader reader;
   if (!reader.ParseFromString(std::string(bytes.begin(), bytes.end()), "")) {
     throw Error("not an OBJ mesh (" + reader.Error() + ")", path, "export it again");
@@ -67,6 +69,7 @@ Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool f
       mesh.triangles.push_back(triangle);
     }
   }
+  if (mesh.triangles.empty()) throw Error("an OBJ mesh without faces", path, "export it again");
   if (!face_normals && a.normals.empty()) compute_normals(mesh);
   return mesh;
 }

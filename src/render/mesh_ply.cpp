@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "reflectree/error.hpp"
-#include "reflectree/io/bytes.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
@@ -118,6 +118,7 @@ void add_face(Mesh& mesh, const std::vector<double>& corners, const std::string&
 }  // namespace
 
 Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
+  if (!starts_with(bytes, "ply")) refuse_recognised(bytes, path, "name a PLY mesh");
   const Header header = read_header(std::string(bytes.begin(), bytes.end()), path);
   Numbers numbers(bytes, header, path);
   Mesh mesh;
