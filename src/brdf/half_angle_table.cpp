@@ -2,6 +2,8 @@
 #include "reflectree/brdf/half_angle_table.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 #include "reflectree/brdf/difference_vector.hpp"
 #include "reflectree/brdf/fast_trigonometry.hpp"
@@ -94,11 +96,11 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
   }
   const Corners c = corners(*this, at);
   Rgb sum;
-  float lowest = 0;  // below 0 where a corner was not measured
+  std::uint32_t bits = 0;  // the sign bit is set where a corner was not measured
   const auto add = [&](int ih, int id, float weight) {
     const float *a = cell(*this, ih, id, c.p.low), *b = cell(*this, ih, id, c.p.high);
     const auto mix = [&](int k) {
-      lowest = min(lowest, min(a[k], b[k]));
+      bits |= std::bit_cast<std::uint32_t>(a[k]) | std::bit_cast<std::uint32_t>(b[k]);
       return weight * lerp(c.p.fraction, a[k], b[k]);
     };
     sum = sum + Rgb{mix(0), mix(1), mix(2)};
@@ -107,7 +109,7 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
   add(c.h.low, c.d.high, (1 - c.h.fraction) * c.d.fraction);
   add(c.h.high, c.d.low, c.h.fraction * (1 - c.d.fraction));
   add(c.h.high, c.d.high, c.h.fraction * c.d.fraction);
-  if (lowest >= 0) return sum;
+  if (bits >> 31U == 0) return sum;
   const auto mean = [&](int k) {
     const Measured m = measured(*this, c, k);
     if (!(m.missing > 0)) return channel(sum, k);
