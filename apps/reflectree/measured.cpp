@@ -40,6 +40,7 @@ std::string entries_text(const MeasuredFacts& facts) {
     return fmt::format("{} of {} entries were not measured ({})", facts.not_measured, facts.entries,
                        percent(facts.not_measured, facts.entries));
   }
+  if (!facts.negative) return fmt::format("none of {} entries is negative", facts.entries);
   std::string text = fmt::format("{} of {} entries are negative ({})", facts.negative, facts.entries,
                                  percent(facts.negative, facts.entries));
   const auto most = std::max_element(facts.negative_at.begin(), facts.negative_at.end());

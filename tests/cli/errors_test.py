@@ -85,7 +85,7 @@ class Errors(ProgramTest):
 
     def test_what_stands_in_the_place_of_a_file_is_called_by_its_name(self):
         pull = "x.y: a Git LFS pointer; fetch the file with git lfs pull"
-        shade = "x.y: a BSDF in the XML of WINDOW and Radiance, a format that is not read; name "
+        shade = "x.y: a WINDOW/Radiance BSDF XML file, a format that is not read; name "
         kinds = ((b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 3\n", pull),
                  (b"<!DOCTYPE html><html>404</html>", "x.y: an HTML page; fetch the file itself"),
                  (b"<?xml version=\"1.0\"?>\n<WindowElement/>", shade),

@@ -45,7 +45,7 @@ TEST(FileKind, TellsWhatItIs) {
                            "<!-- a page -->\n<HTML>", "<?xml version=\"1.0\"?>\n<html xmlns=\"x\">"}) {
     EXPECT_EQ(kind_of(html), "an HTML page") << html;
   }
-  const std::string window = "a BSDF in the XML of WINDOW and Radiance, a format that is not read";
+  const std::string window = "a WINDOW/Radiance BSDF XML file, a format that is not read";
   EXPECT_EQ(kind_of(window_xml), window);
   EXPECT_EQ(kind_of("Recover using: a command\n" + window_xml), window);
   EXPECT_EQ(kind_of("<!--" + std::string(30000, 'x') + "-->" + window_xml), window);
@@ -87,7 +87,7 @@ TEST(FileKind, EveryReaderSaysIt) {
             std::string::npos);
   EXPECT_EQ(error_of([&] { load_brdf(window); }),
             window +
-                ": a BSDF in the XML of WINDOW and Radiance, a format that is not read; name an RGL "
+                ": a WINDOW/Radiance BSDF XML file, a format that is not read; name an RGL "
                 "tensor_file, a MERL .binary, or a CSV of NBRDF, SGD or ABC materials");
   EXPECT_EQ(error_of([&] { load_sampler(nothing); }), nothing + ": empty; fetch the file again");
   for (const char* inside : {"", "."}) {
@@ -103,7 +103,7 @@ TEST(FileKind, KnowsTheSharedFiles) {
   int windows = 0, zemax = 0;
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/radiance_xml")) {
     const std::string kind(recognise_file(read_file(entry.path().string(), 1U << 30U)).what);
-    EXPECT_EQ(kind.rfind("a BSDF in the XML of WINDOW", 0), 0U) << entry.path() << kind;
+    EXPECT_EQ(kind.rfind("a WINDOW/Radiance BSDF XML file", 0), 0U) << entry.path() << kind;
     ++windows;
   }
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/zemax")) {
