@@ -35,6 +35,10 @@ Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool f
   if (!reader.ParseFromString(std::string(bytes.begin(), bytes.end()), "")) {
     throw Error("not an OBJ mesh (" + reader.Error() + ")", path, "export it again");
   }
+  const auto no_face = [](const tinyobj::shape_t& s) { return s.mesh.indices.empty(); };
+  if (std::all_of(reader.GetShapes().begin(), reader.GetShapes().end(), no_face)) {
+    throw Error("an OBJ mesh without faces", path, "export it again");
+  }
   const auto& a = reader.GetAttrib();
   const auto number = [](const std::vector<float>& v, int i, int width, int k) {
     const auto at = std::size_t(i) * std::size_t(width) + std::size_t(k);
@@ -69,7 +73,6 @@ Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool f
       mesh.triangles.push_back(triangle);
     }
   }
-  if (mesh.triangles.empty()) throw Error("an OBJ mesh without faces", path, "export it again");
   if (!face_normals && a.normals.empty()) compute_normals(mesh);
   return mesh;
 }

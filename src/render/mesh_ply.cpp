@@ -33,6 +33,7 @@ struct Header {
 }
 
 Header read_header(const std::string& text, const std::string& path) {
+  if (text.rfind("ply", 0) != 0) refuse_recognised(Bytes(text.begin(), text.end()), path, "name a PLY mesh");
   const std::size_t end = text.find("end_header");
   const std::size_t line_end = end == std::string::npos ? end : text.find('\n', end);
   if (text.rfind("ply", 0) != 0 || line_end == std::string::npos) fail("not a PLY mesh", path);
@@ -118,7 +119,6 @@ void add_face(Mesh& mesh, const std::vector<double>& corners, const std::string&
 }  // namespace
 
 Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
-  if (!starts_with(bytes, "ply")) refuse_recognised(bytes, path, "name a PLY mesh");
   const Header header = read_header(std::string(bytes.begin(), bytes.end()), path);
   Numbers numbers(bytes, header, path);
   Mesh mesh;
@@ -145,6 +145,7 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
       if (e.name == "vertex") mesh.vertices.push_back(vertex);
     }
   }
+  if (mesh.triangles.empty()) fail("a PLY mesh without faces", path);
   if (face_normals) {
     for (Vertex& v : mesh.vertices) v.normal = {};
   } else if (!normals) {

@@ -105,6 +105,10 @@ class Errors(ProgramTest):
                          ("render", "mesh.xml", "-o", "p.exr"), ("render", "ply.xml", "-o", "p.exr"),
                          ("render", "sky.xml", "-o", "p.exr"), ("render", "x.y", "-o", "p.exr")):
                 self.assert_error(expected.split("; name")[0], *args)
+        self.write("x.y", b"v 0 0 0\nv 1 0 0\nl 1 2\n")
+        self.assert_error("x.y: an OBJ mesh without faces", "render", "mesh.xml", "-o", "p.exr")
+        self.write("x.y", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n")
+        self.assert_error("x.y: a PLY mesh without faces", "render", "ply.xml", "-o", "p.exr")
         (self.folder / "folder").mkdir()
         for name in ("folder", "./folder", "folder#linear"):
             self.assert_error("folder: is a directory; name a file inside it", "info", name)
