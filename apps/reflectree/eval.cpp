@@ -83,15 +83,23 @@ Json json_rows(const Rows& rows) {
   return all;
 }
 
+// The function alone, of a material or of a saved sampler.
+AnyBrdf load_function(const Context& context, const std::string& subject) {
+  if (!names_sampler_file(context, subject)) return load_material(context, parse(context, subject));
+  const std::string path = context.locate(subject);
+  const SamplerData data = load_sampler(path);
+  AnyBrdf f = load_material(context, parse(context, data.material, path), path);
+  check_identity(data, f);
+  return f;
+}
+
 int run_eval(const Context& context, const Options& o) {
   const DirectionPairs pairs = read_pairs(o.pairs);  // before a build of minutes
   std::string material;
   Rows rows;
   if (o.no_pdf) {
-    const bool saved = names_sampler_file(context, o.subject);
-    const std::string beside = saved ? context.locate(o.subject) : "";
-    const AnyBrdf f = load_material(
-        context, parse(context, saved ? load_sampler(beside).material : o.subject, beside), beside);
+    if (o.choices.given) throw Error("options of building do not apply", "--no-pdf", "leave them out");
+    const AnyBrdf f = load_function(context, o.subject);
     material = f.traits().name;
     rows = evaluate(f, nullptr, pairs);
   } else {

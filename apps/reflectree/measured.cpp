@@ -29,7 +29,7 @@ std::string worst_band(const MeasuredFacts& facts) {
   std::size_t worst = 0;
   const auto in = [&](std::size_t i) { return share(facts.touched_in_band[i], facts.pairs_in_band[i]); };
   for (std::size_t i = 1; i < facts.pairs_in_band.size(); ++i) worst = in(i) > in(worst) ? i : worst;
-  return fmt::format("; most where the lower direction stands at {:g} to {:g} deg: {} of the pairs there",
+  return fmt::format("; most where the larger elevation is {:g} to {:g} deg: {} of the pairs there",
                      facts.bands_deg[worst], facts.bands_deg[worst + 1],
                      percent(facts.touched_in_band[worst], facts.pairs_in_band[worst]));
 }

@@ -46,6 +46,11 @@ MaterialKind material_kind(ByteView bytes, const std::string& path) {
   throw Error("not a material", path, how);
 }
 
+void refuse_member(const std::string& path, const std::string& member) {
+  if (member.empty()) return;
+  throw Error("no member '" + member + "': the file is one material", path, "leave out #" + member);
+}
+
 TableLookup lookup_of(const std::string& path, const std::string& member) {
   if (member.empty() || member == "nearest") return TableLookup::nearest;
   if (member == "linear") return TableLookup::linear;
@@ -58,9 +63,7 @@ AnyBrdf read_brdf(ByteView bytes, const std::string& path, const std::string& me
   const std::string name = to_text(Material{{{1, "", {}, path, member}}});
   switch (detail::material_kind(bytes, path)) {
     case detail::MaterialKind::rgl: {
-      if (!member.empty()) {
-        throw Error("no member '" + member + "': the file is one material", path, "leave out #" + member);
-      }
+      detail::refuse_member(path, member);
       RglTable table = read_rgl(bytes, path);
       table.name = name;
       return table;

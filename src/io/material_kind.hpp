@@ -14,6 +14,9 @@ enum class MaterialKind { rgl, merl, table };
 // Throws Error, which names what the file is instead.
 MaterialKind material_kind(ByteView bytes, const std::string& path);
 
+// Throws Error for the member of a file that has none.
+void refuse_member(const std::string& path, const std::string& member);
+
 // The look-up that the member of a MERL file names. Throws Error for others.
 TableLookup lookup_of(const std::string& path, const std::string& member);
 

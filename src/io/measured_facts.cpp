@@ -117,6 +117,7 @@ MeasuredFacts table_facts(ByteView bytes, const std::string& path, const std::st
 MeasuredFacts measured_facts(ByteView bytes, const std::string& path, const std::string& member) {
   switch (detail::material_kind(bytes, path)) {
     case detail::MaterialKind::rgl:
+      detail::refuse_member(path, member);
       return rgl_facts(bytes, path);
     case detail::MaterialKind::merl:
       return merl_facts(bytes, path, detail::lookup_of(path, member));

@@ -108,6 +108,8 @@ class Eval(ProgramTest):
         pair = ("--theta-o-deg", "30", "--theta-i-deg", "40", "--phi-deg", "170")
         self.assertEqual(self.rows("g.rfl", *pair), self.rows("ggx:alpha=0.3", *pair))
         self.assertEqual(self.rows("g.rfl", *pair, "--no-pdf")[0]["f_r"], self.rows("g.rfl", *pair)[0]["f_r"])
+        self.assertIn("--no-pdf: options of building do not apply",
+                      self.run_program("eval", "ggx", *pair, "--no-pdf", "--trials", "2", code=2)[1])
 
     def test_output_files_and_json(self):
         args = ("eval", "plastic", "--theta-o-deg", "10,80", "--theta-i-deg", "20", "--phi-deg", "180")

@@ -181,6 +181,7 @@ TEST(Rgl, FactsCountEntriesAndValues) {
     pairs += facts.pairs_in_band[i], touched += facts.touched_in_band[i];
   EXPECT_EQ(pairs, facts.pairs);
   EXPECT_EQ(touched, facts.clipped[1]);
+  EXPECT_THROW(measured_facts(synthetic::rgl_file(recipe), "m.bsdf", "linear"), Error);
   const MeasuredFacts clean = measured_facts(synthetic::rgl_file(), "m.bsdf");
   EXPECT_EQ(clean.negative, 0U);
   EXPECT_EQ(clean.clipped, (std::array<std::uint64_t, 3>{}));
