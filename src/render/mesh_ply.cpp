@@ -145,7 +145,10 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
       if (e.name == "vertex") mesh.vertices.push_back(vertex);
     }
   }
-  if (mesh.triangles.empty()) fail("a PLY mesh without faces", path);
+  const auto has_faces = [](const Element& e) { return e.name == "face" && e.count > 0; };
+  if (std::none_of(header.elements.begin(), header.elements.end(), has_faces)) {
+    fail("a PLY mesh without faces", path);
+  }
   if (face_normals) {
     for (Vertex& v : mesh.vertices) v.normal = {};
   } else if (!normals) {
