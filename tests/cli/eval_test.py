@@ -22,7 +22,7 @@ def text(vector):
 
 class Eval(ProgramTest):
     def rows(self, *args, **more):
-        out, words = self.run_program("eval", *args, **more)
+        out, words = self.run_program("-q", "eval", *args, **more)  # no progress, however slow the machine
         self.assertEqual(words, "")
         head, *lines = out.splitlines()
         return [dict(zip(head.split(","), map(float, line.split(",")))) for line in lines]
