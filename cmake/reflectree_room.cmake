@@ -2,13 +2,14 @@
 # A room is a static library (without SOURCES: headers alone) with a folder in include/ and one in src/; the arrows between rooms are
 # math <- brdf <- sampler <- everything else, kept by tests/guard/layers.py.
 #
-# reflectree_room(name SOURCES a.cpp ... USES reflectree::math ... PRIVATE PNG::PNG ...)
-# makes reflectree::name. Every used target is called package::target; the installed package looks
-# for exactly those packages when a consumer asks for the room.
+# reflectree_room(name SOURCES a.cpp ... USES reflectree::math ... PRIVATE PNG::PNG ... PACKAGES "embree 3" ...)
+# makes reflectree::name. A used target is called package::target; the installed package looks for exactly
+# those packages, and for PACKAGES, when a consumer asks for the room. What is but headers, and seen by our
+# sources alone, is $<BUILD_INTERFACE:...>: a consumer does not need it.
 include(GNUInstallDirs)
 
 function(reflectree_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE;PACKAGES" ${ARGN})
   set(target reflectree_${name})
   if(ROOM_SOURCES)
     set(public PUBLIC)
@@ -26,7 +27,7 @@ function(reflectree_room name)
   target_link_libraries(${target} ${public} ${ROOM_USES})
 
   set(rooms "")
-  set(packages "")
+  set(packages "${ROOM_PACKAGES}")
   foreach(used IN LISTS ROOM_USES ROOM_PRIVATE)
     if(used MATCHES "^reflectree(::|_)(.+)$")
       list(APPEND rooms ${CMAKE_MATCH_2})

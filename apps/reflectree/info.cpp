@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
+#include "measured.hpp"
 
 namespace reflectree::cli {
 
@@ -43,7 +44,7 @@ Leaves leaves_of(const std::vector<T>& trees) {
   return leaves;
 }
 
-Json json_of(const Subject& s) {
+Json json_of(const Subject& s, const std::vector<MeasuredFile>& measured) {
   const SamplerData& d = s.data;
   const auto certified = std::count_if(d.exact.begin(), d.exact.end(), [](const MajorantTree& tree) {
     return tree.status == BoundStatus::certified;
@@ -75,6 +76,7 @@ Json json_of(const Subject& s) {
             {"build_seconds", nullptr}};
   if (s.file_size) json["bytes_on_disk"] = *s.file_size;
   if (s.build_seconds) json["build_seconds"] = *s.build_seconds;
+  json["measured"] = measured_json(measured);
   return json;
 }
 
@@ -91,8 +93,9 @@ std::string bounds_text(const Subject& s) {
 }  // namespace
 
 void show_info(const Context& context, const std::string& command, const Subject& s) {
+  const std::vector<MeasuredFile> measured = measured_files(context, s);
   if (context.json) {
-    context.print_json(command, json_of(s));
+    context.print_json(command, json_of(s, measured));
     return;
   }
   const SamplerData& d = s.data;
@@ -122,6 +125,9 @@ void show_info(const Context& context, const std::string& command, const Subject
   line("asymmetry", fmt::format("{:.2g} between mirror images", d.report.asymmetry));
   line("evaluations", std::to_string(d.report.evaluations));
   if (s.build_seconds) line("build", fmt::format("{:.2f} s", *s.build_seconds));
+  for (const MeasuredFile& file : measured) {
+    for (const auto& [name, value] : measured_lines(file)) line(name, value);
+  }
 }
 
 void add_info(CLI::App& app, Context& context, Run& run) {

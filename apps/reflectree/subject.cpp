@@ -76,7 +76,7 @@ void check_target(const Target& target, const AnyBrdf& f) {
 Subject assemble(const std::string& text, AnyBrdf f, SamplerData data) {
   auto packed = std::make_shared<const PackedSampler>(pack(data));
   Sampler<AnyBrdf> sampler{ExactSampler<AnyBrdf>(f, packed), OneShotSampler<AnyBrdf>(f, packed)};
-  return {text, std::move(f), std::move(data), std::move(packed), std::move(sampler), {}, {}};
+  return {text, "", std::move(f), std::move(data), std::move(packed), std::move(sampler), {}, {}};
 }
 
 }  // namespace
@@ -113,16 +113,20 @@ BuildOptions build_options(const Context& context, const BuildChoices& choices) 
 Material parse(const Context& context, const std::string& text, const std::string& beside) {
   return parse_material(text, [&](const std::string& path) {
     std::error_code ignored;
-    return fs::is_regular_file(find(context, path, beside), ignored);
+    return fs::exists(find(context, path, beside), ignored);  // reading tells what is no file of a material
   });
+}
+
+Bytes read_material_file(const Context& context, const std::string& path, const std::string& beside) {
+  // Named in texts and errors as the user wrote it, wherever it was found.
+  const std::string found = find(context, path, beside);
+  if (found != path) context.detail(path + ": found as " + found);
+  return read_file(found, max_merl_bytes);
 }
 
 AnyBrdf load_material(const Context& context, const Material& material, const std::string& beside) {
   return make_brdf(material, [&](const std::string& path, const std::string& member) {
-    // Named in texts and errors as the user wrote it, wherever it was found.
-    const std::string found = find(context, path, beside);
-    if (found != path) context.detail(path + ": found as " + found);
-    return read_brdf(read_file(found, max_merl_bytes), path, member);
+    return read_brdf(read_material_file(context, path, beside), path, member);
   });
 }
 
@@ -148,6 +152,7 @@ Subject open_subject(const Context& context, const std::string& text, const Buil
     check_identity(data, f);
     Subject subject = assemble(text, std::move(f), std::move(data));
     subject.file_size = fs::file_size(path);
+    subject.beside = path;
     return subject;
   }
   const BuildOptions options = build_options(context, choices);

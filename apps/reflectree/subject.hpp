@@ -8,6 +8,7 @@
 
 #include "context.hpp"
 #include "reflectree/brdf/material.hpp"
+#include "reflectree/io/bytes.hpp"
 #include "reflectree/sampler/sampler.hpp"
 
 namespace reflectree::cli {
@@ -24,7 +25,8 @@ void add_build_choices(CLI::App& command, BuildChoices& choices);
 BuildOptions build_options(const Context& context, const BuildChoices& choices);
 
 struct Subject {
-  std::string text;  // as the user wrote it
+  std::string text;    // as the user wrote it
+  std::string beside;  // the sampler file, beside which its material may lie; empty: none
   AnyBrdf f;
   SamplerData data;
   std::shared_ptr<const PackedSampler> packed;
@@ -36,6 +38,8 @@ struct Subject {
 // Files are looked for in the current folder, beside `beside` where that is given, and in the data folder.
 Material parse(const Context& context, const std::string& text, const std::string& beside = "");
 AnyBrdf load_material(const Context& context, const Material& material, const std::string& beside = "");
+// Where a material's file is, and its bytes.
+Bytes read_material_file(const Context& context, const std::string& path, const std::string& beside);
 bool names_sampler_file(const Context& context, const std::string& text);
 
 // Builds a material's sampler, or loads a sampler file with its material. Throws Error, Cancelled.

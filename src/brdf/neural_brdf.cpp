@@ -23,6 +23,11 @@ NeuralBrdf::NeuralBrdf(std::string name, std::span<const float, weight_count> we
 }
 
 Rgb NeuralBrdf::operator()(const ShadingGeometry<float>& g) const {
+  const Rgb f = unclipped(g);
+  return {max(f.r, 0.f), max(f.g, 0.f), max(f.b, 0.f)};
+}
+
+Rgb NeuralBrdf::unclipped(const ShadingGeometry<float>& g) const {
   const auto [sin_h, d] = detail::difference_vector(g);
   const std::array<float, inputs> x{sin_h, 0.f, g.cos_theta_h, d.x, d.y, d.z};
 
@@ -41,7 +46,7 @@ Rgb NeuralBrdf::operator()(const ShadingGeometry<float>& g) const {
       for (std::size_t k = 0; k < 4; ++k) lanes[k] += layer_2[j + k] * weights_3_[c][j + k];
     }
     const float sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-    return max(std::expm1(min(sum, 80.f)), 0.f);  // finite whatever the weights
+    return std::expm1(min(sum, 80.f));  // finite whatever the weights
   };
   return {output(0), output(1), output(2)};
 }

@@ -27,6 +27,8 @@ float interpolate(const std::vector<float>& table, float u) {
   return lerp(p.fraction, node[0], node[1]);
 }
 
+Rgb clipped(Rgb f) { return {max(f.r, 0.f), max(f.g, 0.f), max(f.b, 0.f)}; }
+
 float elevation_to_u(float theta) { return sqrt(theta * (2.f / pi)); }
 
 // One slice of the warp, scaled to unit mass: cumulative trapezoids along u, then along v (the density is
@@ -41,7 +43,7 @@ Slice integrate(const float* density, int width, int height) {
   for (std::size_t y = 0; y < h; ++y) {
     for (std::size_t x = 0; x < w; ++x) {
       const std::size_t i = y * w + x;
-      s.pdf[i] = max(double(density[i]), 0.0);
+      s.pdf[i] = double(density[i]);
       s.cdf[i] = x == 0 ? 0 : s.cdf[i - 1] + 0.5 * (s.pdf[i - 1] + s.pdf[i]);
     }
     s.row_mass[y] = s.cdf[y * w + w - 1];
@@ -112,10 +114,12 @@ RglTable::Known RglTable::known(const ShadingGeometry<float>& g) const {
   return {pair, t1, 4.f * interpolate(sigma_, elevation_to_u(theta_o))};
 }
 
-Rgb RglTable::operator()(const ShadingGeometry<float>& g) const {
+Rgb RglTable::operator()(const ShadingGeometry<float>& g) const { return clipped(unclipped(g)); }
+
+Rgb RglTable::unclipped(const ShadingGeometry<float>& g) const {
   const Known of_wo = known(g);
   const InWarp at = in_warp(of_wo, g);
-  return value(of_wo, at.u, in_colour(of_wo, at), g.cos_theta_i);
+  return unclipped(of_wo, at.u, in_colour(of_wo, at), g.cos_theta_i);
 }
 
 void RglTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
@@ -157,7 +161,7 @@ void RglTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<
       both_ends(p.colour.node, 2), both_ends(p.colour.node + colour_stride, 2);
     }
     for (const Pair& p : std::span(pairs, count)) {
-      const Rgb v = value(p.of_wo, p.warp.u, p.colour, geometry[p.i].cos_theta_i);
+      const Rgb v = clipped(unclipped(p.of_wo, p.warp.u, p.colour, geometry[p.i].cos_theta_i));
       out[3 * p.i] = v.r, out[3 * p.i + 1] = v.g, out[3 * p.i + 2] = v.b;
     }
   }
@@ -197,11 +201,12 @@ RglTable::InColour RglTable::in_colour(const Known& of_wo, const InWarp& at) con
 }
 
 // S, bilinear on the warped square.
-Rgb RglTable::value(const Known& of_wo, float u, const InColour& at, float cos_theta_i) const {
+Rgb RglTable::unclipped(const Known& of_wo, float u, const InColour& at, float cos_theta_i) const {
   const auto colour_stride = std::size_t(colour_width_);
   const ColourNode* n00 = at.node;
   const float t1 = of_wo.t1, t0 = 1 - t1, a1 = at.x, a0 = 1 - a1, b1 = at.y, b0 = 1 - b1;
-  const float scale = interpolate(ndf_, u) / (of_wo.four_sigma * max(1e-6f, cos_theta_i));
+  const float normals = max(interpolate(ndf_, u), 0.f);
+  const float scale = normals / (of_wo.four_sigma * max(1e-6f, cos_theta_i));
   float out[4] = {0, 0, 0, 0};
   const auto add = [&out](const ColourNode& n, float w0, float w1) {
     for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];

@@ -6,6 +6,7 @@
 
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/file_kind.hpp"
 
 namespace reflectree {
 
@@ -32,6 +33,7 @@ Image read_image(const std::string& path) {
   if (starts_with(bytes, "#?")) return read_hdr(bytes, path);
   if (starts_with(bytes, "\x76\x2f\x31\x01")) return read_exr(bytes, path);
   if (starts_with(bytes, "\x89PNG")) return read_png(bytes, path);
+  refuse_recognised(bytes, path, "convert it to Radiance .hdr, OpenEXR or PNG");
   throw Error("neither Radiance .hdr, OpenEXR nor PNG", path, "convert the picture to one of them");
 }
 

@@ -3,9 +3,11 @@
 
 #include <cmath>
 
+#include "material_kind.hpp"
 #include "reflectree/brdf/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "reflectree/io/merl.hpp"
 #include "reflectree/io/model_tables.hpp"
 #include "reflectree/io/rgl.hpp"
@@ -15,17 +17,6 @@ namespace {
 
 constexpr std::uint64_t max_material_bytes = max_merl_bytes;
 static_assert(max_rgl_bytes <= max_material_bytes && max_parameter_table_bytes <= max_material_bytes);
-
-enum class Kind { rgl, merl, table };
-
-Kind kind_of(ByteView bytes, const std::string& path) {
-  if (bytes.empty()) throw Error("empty", path, "fetch the file again");
-  if (is_tensor_file(bytes)) return Kind::rgl;
-  if (is_merl_file(bytes)) return Kind::merl;
-  if (is_parameter_table(bytes)) return Kind::table;
-  throw Error("not a material", path,
-              "name an RGL tensor_file, a MERL .binary, or a CSV of NBRDF, SGD or ABC materials");
-}
 
 AnyBrdf read_table_member(ByteView bytes, const std::string& path, const std::string& member) {
   const ParameterTable table = read_parameter_table(bytes, path);
@@ -44,27 +35,45 @@ AnyBrdf read_table_member(ByteView bytes, const std::string& path, const std::st
 
 }  // namespace
 
+namespace detail {
+
+MaterialKind material_kind(ByteView bytes, const std::string& path) {
+  if (is_tensor_file(bytes)) return MaterialKind::rgl;
+  if (is_merl_file(bytes)) return MaterialKind::merl;
+  if (is_parameter_table(bytes)) return MaterialKind::table;
+  const std::string how = "name an RGL tensor_file, a MERL .binary, or a CSV of NBRDF, SGD or ABC materials";
+  refuse_recognised(bytes, path, how);
+  throw Error("not a material", path, how);
+}
+
+void refuse_member(const std::string& path, const std::string& member) {
+  if (member.empty()) return;
+  throw Error("no member '" + member + "': the file is one material", path, "leave out #" + member);
+}
+
+TableLookup lookup_of(const std::string& path, const std::string& member) {
+  if (member.empty() || member == "nearest") return TableLookup::nearest;
+  if (member == "linear") return TableLookup::linear;
+  throw Error("no member '" + member + "'", path, "its look-ups are #nearest and #linear");
+}
+
+}  // namespace detail
+
 AnyBrdf read_brdf(ByteView bytes, const std::string& path, const std::string& member) {
   const std::string name = to_text(Material{{{1, "", {}, path, member}}});
-  switch (kind_of(bytes, path)) {
-    case Kind::rgl: {
-      if (!member.empty()) {
-        throw Error("no member '" + member + "': the file is one material", path, "leave out #" + member);
-      }
+  switch (detail::material_kind(bytes, path)) {
+    case detail::MaterialKind::rgl: {
+      detail::refuse_member(path, member);
       RglTable table = read_rgl(bytes, path);
       table.name = name;
       return table;
     }
-    case Kind::merl: {
-      if (!member.empty() && member != "nearest" && member != "linear") {
-        throw Error("no member '" + member + "'", path, "its look-ups are #nearest and #linear");
-      }
-      HalfAngleTable table =
-          read_merl(bytes, path, member == "linear" ? TableLookup::linear : TableLookup::nearest);
+    case detail::MaterialKind::merl: {
+      HalfAngleTable table = read_merl(bytes, path, detail::lookup_of(path, member));
       table.name = name;
       return table;
     }
-    case Kind::table:
+    case detail::MaterialKind::table:
       return read_table_member(bytes, path, member);
   }
   throw Error("not a material", path, "name a file of measured or fitted materials");
@@ -76,12 +85,12 @@ AnyBrdf load_brdf(const std::string& path, const std::string& member) {
 
 std::vector<std::string> list_members(const std::string& path) {
   const Bytes bytes = read_file(path, max_material_bytes);
-  switch (kind_of(bytes, path)) {
-    case Kind::rgl:
+  switch (detail::material_kind(bytes, path)) {
+    case detail::MaterialKind::rgl:
       return {};
-    case Kind::merl:
+    case detail::MaterialKind::merl:
       return {"nearest", "linear"};
-    case Kind::table:
+    case detail::MaterialKind::table:
       break;
   }
   std::vector<std::string> names;

@@ -82,7 +82,6 @@ HalfAngleTable read_merl(ByteView bytes, const std::string& where, TableLookup l
         throw Error("damaged: entry " + std::to_string(c * cells + i) + " is not finite", where,
                     "fetch the file again");
       }
-      if (v < 0) v = 0, ++table.clamped;
     }
   }
   return table;

@@ -38,14 +38,21 @@ struct Values {
     }
     return row.values[std::size_t(column)];
   }
+  [[noreturn]] void out_of_range(const std::string& name) const {
+    throw Error("'" + name + "' of '" + row.material + "' is out of range", table.where,
+                "mend the line or fetch the file again");
+  }
   // A value in [lo, hi], as a float.
   float in(const std::string& name, double lo, double hi) const {
     const double v = get(name);
-    if (!(v >= lo && v <= hi)) {
-      throw Error("'" + name + "' of '" + row.material + "' is out of range", table.where,
-                  "mend the line or fetch the file again");
-    }
+    if (!(v >= lo && v <= hi)) out_of_range(name);
     return float(v);
+  }
+  // A value that no float need hold.
+  double at_least(const std::string& name, double lo) const {
+    const double v = get(name);
+    if (!(v >= lo)) out_of_range(name);
+    return v;
   }
   Rgb rgb(const std::string& name, double lo, double hi) const {
     return {in(name + "_r", lo, hi), in(name + "_g", lo, hi), in(name + "_b", lo, hi)};
@@ -88,7 +95,8 @@ Sgd make_sgd(const ParameterTable& table, const ParameterTable::Row& row, const 
     c.f0 = values.in("F0" + s, -largest, largest);
     c.f1 = values.in("F1" + s, -largest, largest);
     c.lambda = values.in("lambda" + s, 0, largest);
-    const double scale = values.get("c" + s);  // up to 1e92: kept as a logarithm
+    // Up to 1e92: kept as a logarithm.
+    const double scale = values.at_least("c" + s, 0);
     c.log_c = scale > 0 ? float(std::log(scale)) : -std::numeric_limits<float>::max();
     c.k = values.in("k" + s, 0, 1e4);
     c.theta_0 = values.in("theta0" + s, -10, 10);

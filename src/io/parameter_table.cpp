@@ -25,6 +25,13 @@ std::string_view take_until(std::string_view& text, char end) {
   return taken;
 }
 
+// The first of two equal texts, or an empty one.
+std::string repeated(std::vector<std::string> texts) {
+  std::sort(texts.begin(), texts.end());
+  const auto found = std::adjacent_find(texts.begin(), texts.end());
+  return found == texts.end() ? "" : *found;
+}
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // [+-]digits[.digits][e[+-]digits], the whole text, whatever the locale; fitted constants reach 1e92, beyond
@@ -142,6 +149,15 @@ ParameterTable read_parameter_table(ByteView bytes, const std::string& where) {
     table.rows.push_back(std::move(row));
   }
   if (table.rows.empty()) throw Error("no material", where, "fetch the file again");
+  // Which of two is meant nobody can tell.
+  std::vector<std::string> names;
+  for (const ParameterTable::Row& row : table.rows) names.push_back(row.material);
+  if (const std::string twice = repeated(std::move(names)); !twice.empty()) {
+    throw Error("material '" + twice + "' stands in two lines", where, "keep one of them");
+  }
+  if (const std::string twice = repeated(table.columns); !twice.empty()) {
+    throw Error("column '" + twice + "' stands twice", where, "keep one of them");
+  }
   return table;
 }
 

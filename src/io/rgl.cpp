@@ -101,7 +101,7 @@ std::vector<float> row(std::vector<float> table, std::uint64_t width, const std:
 
 bool is_tensor_file(ByteView bytes) { return starts_with(bytes, magic); }
 
-RglTable read_rgl(ByteView bytes, const std::string& where, NegativeEntries negatives) {
+RglFields read_rgl_fields(ByteView bytes, const std::string& where) {
   if (!is_tensor_file(bytes)) {
     throw Error("not a tensor_file", where, "use an isotropic RGB file (*_rgb.bsdf) of the RGL database");
   }
@@ -140,21 +140,18 @@ RglTable read_rgl(ByteView bytes, const std::string& where, NegativeEntries nega
     damaged("field 'jacobian' has an unexpected shape", where);
   f.jacobian = jacobian.data[0] != 0;
 
-  std::uint64_t clamped = 0;
-  const auto clamp_all = [&clamped](std::vector<float>& values) {
-    for (float& v : values) {
-      if (v < 0) v = 0, ++clamped;
-    }
-  };
   for (const float s : f.sigma) {
     if (!(s >= smallest_sigma)) damaged("'sigma' is not positive", where);
   }
-  clamp_all(f.ndf);
-  clamp_all(f.vndf);
-  if (negatives == NegativeEntries::clamp) clamp_all(f.rgb);
-  RglTable table(f);
-  table.clamped = clamped;
-  return table;
+  // Colours and the distribution of normals may be negative by noise; a density that a warp inverts may not.
+  for (const float v : f.vndf) {
+    if (v < 0) damaged("'vndf' is a density and holds a negative value", where);
+  }
+  return f;
+}
+
+RglTable read_rgl(ByteView bytes, const std::string& where) {
+  return RglTable(read_rgl_fields(bytes, where));
 }
 
 }  // namespace reflectree

@@ -7,6 +7,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/io/checksum.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/file_kind.hpp"
 
 namespace reflectree {
 
@@ -281,8 +282,9 @@ Bytes encode_sampler(const SamplerData& data) {
 
 SamplerData decode_sampler(ByteView bytes, const std::string& where) {
   if (!is_sampler_file(bytes)) {
-    throw Error(bytes.empty() ? "empty" : "not a sampler file", where,
-                "name a file that 'reflectree build' saved");
+    const std::string how = "name a file that 'reflectree build' saved";
+    refuse_recognised(bytes, where, how);
+    throw Error("not a sampler file", where, how);
   }
   if (bytes.size() < magic.size() + 4) throw Error("truncated", where, fetch_again);
   const ByteView body = bytes.first(bytes.size() - 4);

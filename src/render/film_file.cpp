@@ -3,6 +3,7 @@
 // as doubles, little-endian.
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "reflectree/render/film.hpp"
 
 namespace reflectree::render {
@@ -24,7 +25,10 @@ void save_film(const std::string& path, const Film& film) {
 
 Film load_film(const std::string& path) {
   const Bytes bytes = read_file(path, std::uint64_t(1) << 34U);
-  if (!starts_with(bytes, magic)) throw Error("not a film", path, "render anew");
+  if (!starts_with(bytes, magic)) {
+    refuse_recognised(bytes, path, "render anew");
+    throw Error("not a film", path, "render anew");
+  }
   ByteReader in(bytes, path);
   in.seek(magic.size());
   Film film;

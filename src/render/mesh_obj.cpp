@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reflectree/error.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
@@ -29,9 +30,14 @@ void compute_normals(Mesh& mesh) {
 }
 
 Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool flip_v) {
+  refuse_recognised(bytes, path, "name an OBJ mesh");
   tinyobj::ObjReader reader;
   if (!reader.ParseFromString(std::string(bytes.begin(), bytes.end()), "")) {
     throw Error("not an OBJ mesh (" + reader.Error() + ")", path, "export it again");
+  }
+  const auto no_face = [](const tinyobj::shape_t& s) { return s.mesh.indices.empty(); };
+  if (std::all_of(reader.GetShapes().begin(), reader.GetShapes().end(), no_face)) {
+    throw Error("an OBJ mesh without faces", path, "export it again");
   }
   const auto& a = reader.GetAttrib();
   const auto number = [](const std::vector<float>& v, int i, int width, int k) {

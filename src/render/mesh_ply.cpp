@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "reflectree/error.hpp"
-#include "reflectree/io/bytes.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "reflectree/render/mesh_files.hpp"
 
 namespace reflectree::render {
@@ -33,6 +33,7 @@ struct Header {
 }
 
 Header read_header(const std::string& text, const std::string& path) {
+  if (text.rfind("ply", 0) != 0) refuse_recognised(Bytes(text.begin(), text.end()), path, "name a PLY mesh");
   const std::size_t end = text.find("end_header");
   const std::size_t line_end = end == std::string::npos ? end : text.find('\n', end);
   if (text.rfind("ply", 0) != 0 || line_end == std::string::npos) fail("not a PLY mesh", path);
@@ -143,6 +144,10 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
       }
       if (e.name == "vertex") mesh.vertices.push_back(vertex);
     }
+  }
+  const auto has_faces = [](const Element& e) { return e.name == "face" && e.count > 0; };
+  if (std::none_of(header.elements.begin(), header.elements.end(), has_faces)) {
+    fail("a PLY mesh without faces", path);
   }
   if (face_normals) {
     for (Vertex& v : mesh.vertices) v.normal = {};

@@ -4,6 +4,7 @@
 
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/file_kind.hpp"
 #include "xml_shapes.hpp"
 
 namespace reflectree::render {
@@ -185,6 +186,7 @@ Scene parse_scene(std::string_view xml, const std::string& path, const SceneOpti
 
 Scene load_scene(const std::string& path, const SceneOptions& options, const Host& host) {
   const Bytes bytes = read_file(path, std::uint64_t(1) << 26U);
+  if (!recognise_file(bytes).may_be_scene) refuse_recognised(bytes, path, "name a Mitsuba 3 scene");
   return parse_scene(std::string(bytes.begin(), bytes.end()), path, options, host);
 }
 

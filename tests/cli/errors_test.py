@@ -77,9 +77,43 @@ class Errors(ProgramTest):
         self.write("empty.bsdf", b"")
         self.assert_error("empty.bsdf: empty", "info", "empty.bsdf")
         self.write("foreign.bsdf", b"\x89PNG\r\n\x1a\n" + b"x" * 1000)
+        self.assert_error("foreign.bsdf: a PNG picture; name an RGL", "info", "foreign.bsdf")
+        self.write("foreign.bsdf", b"tensor")
         self.assert_error("foreign.bsdf: not a material", "info", "foreign.bsdf")
         self.write("cut.bsdf", b"tensor_file\0\1\0")
         self.assert_error("cut.bsdf", "verify", "cut.bsdf")
+
+    def test_what_stands_in_the_place_of_a_file_is_called_by_its_name(self):
+        pull = "x.y: a Git LFS pointer; fetch the file with git lfs pull"
+        shade = "x.y: a WINDOW/Radiance BSDF XML file, a format that is not read; name "
+        kinds = ((b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 3\n", pull),
+                 (b"<!DOCTYPE html><html>404</html>", "x.y: an HTML page; fetch the file itself"),
+                 (b"<?xml version=\"1.0\"?>\n<WindowElement/>", shade),
+                 (b"PK\x03\x04x", "x.y: a ZIP archive; unpack it"),
+                 (b"\x1f\x8b\x08x", "x.y: compressed by gzip; unpack it with gunzip"),
+                 (b"", "x.y: empty; fetch the file again"))
+        scene = b"""<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="40"/>
+                    <film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/></film>
+                    </sensor>%s</scene>"""
+        self.write("mesh.xml", scene % b"<shape type='obj'><string name='filename' value='x.y'/></shape>")
+        self.write("ply.xml", scene % b"<shape type='ply'><string name='filename' value='x.y'/></shape>")
+        self.write("sky.xml", scene % b"<emitter type='envmap'><string name='filename' value='x.y'/></emitter>")
+        for content, expected in kinds:
+            self.write("x.y", content)
+            for args in (("info", "x.y"), ("info", "0.5*x.y"), ("info", "x.y#linear"), ("list", "x.y"),
+                         ("bake", "x.y", "-o", "b"), ("image-compare", "x.y", "x.y"),
+                         ("render", "mesh.xml", "-o", "p.exr"), ("render", "ply.xml", "-o", "p.exr"),
+                         ("render", "sky.xml", "-o", "p.exr"), ("render", "x.y", "-o", "p.exr")):
+                self.assert_error(expected.split("; name")[0], *args)
+        self.write("x.y", b"v 0 0 0\nv 1 0 0\nl 1 2\n")
+        self.assert_error("x.y: an OBJ mesh without faces", "render", "mesh.xml", "-o", "p.exr")
+        self.write("x.y", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n")
+        self.assert_error("x.y: a PLY mesh without faces", "render", "ply.xml", "-o", "p.exr")
+        (self.folder / "folder").mkdir()
+        for name in ("folder", "./folder", "folder#linear"):
+            self.assert_error("folder: is a directory; name a file inside it", "info", name)
+        self.assert_error("folder: is a directory", "render", "folder", "-o", "p.exr")
+        self.assert_error("folder: is a directory", "image-compare", "folder", "folder")
 
     def test_outputs(self):
         self.assert_error("no such folder", "build", "lambert", "-o", "nowhere/l.rfl")

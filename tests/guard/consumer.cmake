@@ -2,6 +2,7 @@
 # Configures, builds and runs tests/consumer against the library.
 #   WAY       find_package (installs BUILD first); any other: add_subdirectory(SOURCE)
 #   COMPILER  the C++ compiler    FLAGS  its flags    SCRATCH  a folder of ours
+#   GENERATOR CMake's             ROOMS  that BUILD has installed, for find_package
 set(folder ${SCRATCH}/${WAY})
 
 function(step)
@@ -15,7 +16,7 @@ set(options "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS} -O1" 
 if(WAY STREQUAL "find_package")
   file(REMOVE_RECURSE ${folder})
   step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
-  list(APPEND options "-DCMAKE_PREFIX_PATH=${folder}/prefix")
+  list(APPEND options "-DCMAKE_PREFIX_PATH=${folder}/prefix" "-DREFLECTREE_COMPONENTS=${ROOMS}")
 else()
   list(APPEND options "-DREFLECTREE_SOURCE=${SOURCE}" -DREFLECTREE_WERROR=ON)
 endif()
@@ -23,6 +24,13 @@ find_program(ccache ccache)
 if(ccache)
   list(APPEND options "-DCMAKE_CXX_COMPILER_LAUNCHER=${ccache}")
 endif()
-step(${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/tests/consumer -B ${folder}/build ${options})
+step(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/consumer -B ${folder}/build ${options})
 step(${CMAKE_COMMAND} --build ${folder}/build --parallel 2)
-step(${folder}/build/consumer)
+file(GLOB programs ${folder}/build/consumer*)
+if(NOT programs)
+  message(FATAL_ERROR "${WAY}: no program")
+endif()
+foreach(program IN LISTS programs)
+  message(STATUS ${program})
+  step(${program})
+endforeach()

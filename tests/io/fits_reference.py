@@ -54,8 +54,8 @@ def sgd(p, wo, wi):
             inner = min(p["c" + s] * x ** p["k" + s], 700.0)
             return min(max(1 + p["lambda" + s] * (1 - math.exp(inner)), 0.0), 1.0)
 
-        facets = max(fresnel, 0.0) * d * g(wo) * g(wi) / (wo[2] * wi[2])
-        out.append((p["kd" + s] + p["ks" + s] * facets) / math.pi)
+        facets = fresnel * d * g(wo) * g(wi) / (wo[2] * wi[2])
+        out.append(max((p["kd" + s] + p["ks" + s] * facets) / math.pi, 0.0))
     return out
 
 

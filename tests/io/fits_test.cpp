@@ -10,6 +10,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/io/material_file.hpp"
+#include "reflectree/io/measured_facts.hpp"
 #include "reflectree/io/model_tables.hpp"
 #include "synthetic.hpp"
 
@@ -87,11 +88,54 @@ TEST(Fits, MaskingIsSmoothNearTheHorizon) {
   }
 }
 
+// The fitted Fresnel term falls below 0 near theta_d = 0: there the lobe darkens the ground, down to f = 0.
+TEST(Fits, ANegativeFresnelTermDarkensAndTheValueIsCut) {
+  SgdChannel dark, faint;
+  dark.kd = 0.2f, dark.ks = 1, dark.f0 = 0.1f, dark.f1 = 0.4f, dark.alpha = 0.3f, dark.kappa = 3;
+  faint = dark, faint.ks = 0.01f;
+  const Sgd sgd{"dark", {dark, faint, {}}};
+  const Direction normal{0, 0, 1};
+  const ShadingGeometry<float> g = shading_geometry(normal, normal);
+  EXPECT_LT(sgd.unclipped(g).r, 0);
+  EXPECT_EQ(sgd(g).r, 0);
+  const float x = faint.alpha, lobe = 3 / pi * std::exp(-x) / x;  // D at the peak; p = 1, G = 1
+  EXPECT_NEAR(sgd(g).g, (0.2f + 0.01f * -0.3f * lobe) / pi, 1e-6f);
+  EXPECT_LT(sgd(g).g, 0.2f / pi - 1e-4f) << "a term cut at 0 would leave the ground";
+}
+
+TEST(Fits, FactsCountValuesBelowZero) {
+  const TemporaryFolder folder("fits");
+  std::string table = synthetic::sgd_csv();
+  EXPECT_EQ(measured_facts(synthetic::as_bytes(table), "t").clipped, (std::array<std::uint64_t, 3>{}));
+  table.replace(table.find("varnish,0.05,"), 13, "varnish,0,");           // no ground in red
+  table.replace(table.find(",0.9,0.25,0.6,0.1,"), 18, ",0,0.25,0.6,1,");  // F = -c + (1 - c)^5
+  const MeasuredFacts facts = measured_facts(synthetic::as_bytes(table), "t");
+  EXPECT_GT(facts.clipped[0], facts.pairs / 8);
+  EXPECT_EQ(facts.clipped[1] + facts.clipped[2], 0U);
+  EXPECT_EQ(facts.entries, 0U);
+  // A network whose last biases are low is negative somewhere.
+  const std::string network = synthetic::neural_csv();
+  const MeasuredFacts of_network = measured_facts(synthetic::as_bytes(network), "n", "one");
+  const NeuralBrdf f = make_neural(read_parameter_table(synthetic::as_bytes(network), "n"),
+                                   read_parameter_table(synthetic::as_bytes(network), "n").row("one"), "one");
+  const Pairs pairs = random_pairs(4000, 0.5f, 3);
+  std::array<double, 3> below{};
+  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+    const auto g = shading_geometry(pairs.wo[i], pairs.wi[i]);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(channel(f(g), c), std::max(channel(f.unclipped(g), c), 0.f));
+      below[std::size_t(c)] += channel(f.unclipped(g), c) < 0 ? 1 / 4000. : 0;
+    }
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(double(of_network.clipped[c]) / double(of_network.pairs), below[c], 0.05);
+}
+
 TEST(Fits, MeasuredTablesAgreeWithTheReference) {
   if (measured_data().empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
   for (const char* m : {"alum-bronze", "chrome", "pink-fabric"})
     expect_close(measured_data() + "/nbrdf/nbrdf_merl.csv", m);
-  for (const char* m : {"alum-bronze", "chrome", "green-acrylic", "tungsten-carbide"}) {
+  for (const char* m : {"alum-bronze", "chrome", "green-acrylic", "tungsten-carbide", "white-paint"}) {
     expect_close(measured_data() + "/fits/sgd_merl100.csv", m);
   }
   for (const char* m : {"alum-bronze", "chrome", "white-fabric"})
@@ -151,6 +195,12 @@ TEST(ParameterTable, SaysWhatIsWrongAndWhere) {
   std::string table = synthetic::abc_csv();
   table.replace(table.find("2.2365"), 6, "0.5");
   EXPECT_NE(error_of(table).find("'ior' of 'bronze' is out of range"), std::string::npos);
+  table = synthetic::sgd_csv();
+  table.replace(table.find("1e49"), 4, "-1e9");
+  EXPECT_NE(error_of(table).find("'c_r' of 'varnish' is out of range"), std::string::npos);
+  EXPECT_NE(error_of("material,a\nx,1\ny,2\nx,3\n").find("material 'x' stands in two lines"),
+            std::string::npos);
+  EXPECT_NE(error_of("material,a,b,a\nx,1,2,3\n").find("column 'a' stands twice"), std::string::npos);
 }
 
 TEST(ParameterTable, ReadsNumbersToTheLastFloatDigit) {

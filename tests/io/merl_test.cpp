@@ -10,6 +10,7 @@
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/brdf/models/lambert.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/io/measured_facts.hpp"
 
 namespace reflectree {
 namespace {
@@ -122,7 +123,6 @@ TEST(Merl, BakedFileGivesTheFunctionBackAtTheCentres) {
   const Bytes bytes = write_merl(tabulate_merl(ggx));
   EXPECT_EQ(bytes.size(), 34'992'012U);
   const HalfAngleTable table = read_merl(bytes, "baked");
-  EXPECT_EQ(table.clamped, 0U);
   EXPECT_EQ(table.name, "baked");
   for (int h = 0; h < 90; h += 4) {
     for (int d = 1; d < 90; d += 4) {
@@ -160,16 +160,97 @@ TEST(Merl, ValuesAndPlanesAreThoseOfTheFormat) {
   EXPECT_NEAR(stored(0, 7), 0.3 / pi_v<double> * 1500, 1e-4);
   EXPECT_NEAR(stored(1, 1'000'000), 0.6 / pi_v<double> * 1500 / 1.15, 1e-4);
   EXPECT_NEAR(stored(2, 1'457'999), 0.9 / pi_v<double> * 1500 / 1.66, 1e-4);
-  // A missing entry, here the green one of cell (2, 3, 5), reads as 0 and is counted.
+  // A missing entry, here the green one of cell (2, 3, 5), reads as 0, is counted, and stays missing.
   Bytes minus_one;
   append_f64(minus_one, -1);
   const std::size_t cell = 5 + 180 * (3 + 90 * 2);
   std::copy(minus_one.begin(), minus_one.end(), bytes.begin() + std::ptrdiff_t(12 + 8 * (1'458'000 + cell)));
   const HalfAngleTable table = read_merl(bytes, "x");
-  EXPECT_EQ(table.clamped, 1U);
+  EXPECT_EQ(measured_facts(bytes, "x").not_measured, 1U);
+  EXPECT_EQ(measured_facts(write_merl(table), "x").not_measured, 1U) << "a copy keeps the mark";
   const auto [wo, wi] = cell_centre(table, 2, 3, 5);
   EXPECT_EQ(eval(table, wo, wi).g, 0);
   EXPECT_NEAR(eval(table, wo, wi).b, 0.9f / pi, 1e-6f);
+}
+
+// Fives with a hole in one channel: the mark -1 is never mixed with them.
+HalfAngleTable holed_table(const std::vector<std::array<int, 3>>& hole, int channel) {
+  HalfAngleTable table = index_table(12, 10, 16, false);
+  table.lookup = TableLookup::linear;
+  for (float& v : table.rgb) v = 5;
+  for (const auto& [h, d, p] : hole) {
+    table.rgb[((std::size_t(h) * 10 + std::size_t(d)) * 16 + std::size_t(p)) * 3 + std::size_t(channel)] = -1;
+  }
+  return table;
+}
+
+TEST(HalfAngleTable, MissingEntriesAreLeftOut) {
+  std::vector<std::array<int, 3>> hole;
+  for (int h = 3; h < 6; ++h) {
+    for (int d = 2; d < 5; ++d) {
+      for (int p = 0; p < 16; ++p) hole.push_back({h, d, p});
+    }
+  }
+  const HalfAngleTable table = holed_table(hole, 1), whole_table = holed_table({}, 1);
+  int whole = 0, bridged = 0, dark = 0;
+  const Pairs pairs = random_pairs(20000, 0.5f, 6);
+  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+    const Rgb f = eval(table, pairs.wo[i], pairs.wi[i]);
+    const Rgb missing = table.unmeasured(shading_geometry(pairs.wo[i], pairs.wi[i]));
+    const Rgb unholed = eval(whole_table, pairs.wo[i], pairs.wi[i]);
+    ASSERT_EQ(f.r, unholed.r) << "another channel";
+    ASSERT_EQ(missing.r, 0);
+    const Position x = position(table, pairs.wo[i], pairs.wi[i]);
+    // Inside the hole's centres nothing was measured; outside its neighbours' everything was.
+    const bool inside = x.h > 3.501 && x.h < 5.499 && x.d > 2.501 && x.d < 4.499;
+    const bool outside = x.h < 2.499 || x.h > 6.501 || x.d < 1.499 || x.d > 5.501;
+    if (inside) {
+      ASSERT_EQ(f.g, 0);
+      ASSERT_NEAR(missing.g, 1, 1e-5);
+      ++dark;
+    } else if (outside) {
+      ASSERT_EQ(f.g, unholed.g);
+      ASSERT_EQ(missing.g, 0);
+      ++whole;
+    } else if (missing.g > 1e-3f && missing.g < 0.999f) {
+      ASSERT_NEAR(f.g, 5, 1e-3) << "no fading towards the hole";
+      ++bridged;
+    }
+  }
+  EXPECT_GT(whole, 1000);
+  EXPECT_GT(bridged, 100);
+  EXPECT_GT(dark, 100);
+  HalfAngleTable nearest = table;
+  nearest.lookup = TableLookup::nearest;
+  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+    const float g = eval(nearest, pairs.wo[i], pairs.wi[i]).g;
+    ASSERT_TRUE(g == 0 || g == 5) << g;
+    ASSERT_EQ(g == 0, nearest.unmeasured(shading_geometry(pairs.wo[i], pairs.wi[i])).g == 1);
+  }
+}
+
+TEST(Merl, FactsTellWhatWasNotMeasured) {
+  HalfAngleTable table = tabulate_merl(Lambert{{0.3f, 0.6f, 0.9f}});
+  // Blue beyond 60 degrees of theta_d.
+  std::uint64_t missing = 0;
+  for (std::size_t i = 0; i < table.rgb.size(); i += 3) {
+    if (i / 3 / 180 % 90 >= 60) table.rgb[i + 2] = -1, ++missing;
+  }
+  const Bytes bytes = write_merl(table);
+  for (const std::string member : {"nearest", "linear"}) {
+    const MeasuredFacts facts = measured_facts(bytes, "m.binary", member);
+    EXPECT_EQ(facts.not_measured, missing);
+    EXPECT_EQ(facts.entries, 3U * 1'458'000);
+    EXPECT_EQ(facts.negative, 0U);
+    EXPECT_EQ(facts.dark[0] + facts.bridged[0] + facts.dark[1] + facts.bridged[1], 0U);
+    EXPECT_GT(facts.dark[2], facts.pairs / 20);
+    EXPECT_EQ(facts.bridged[2] > 0, member == "linear");
+    // Such pairs have a low direction: theta_d is no more than the larger elevation. Linear look-ups meet the
+    // gap half a degree earlier.
+    EXPECT_EQ(facts.touched_in_band[0], 0U);
+    EXPECT_LE(facts.touched_in_band[1], member == "linear" ? facts.pairs_in_band[1] / 50 : 0U);
+    EXPECT_GT(facts.touched_in_band[4], 0U);
+  }
 }
 
 // f(wo, wi) != f(wi, wo).

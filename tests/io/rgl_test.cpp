@@ -12,6 +12,7 @@
 #include "reflectree/brdf/fast_trigonometry.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
+#include "reflectree/io/measured_facts.hpp"
 #include "synthetic.hpp"
 
 namespace reflectree {
@@ -112,13 +113,83 @@ TEST(Rgl, BatchesAreOneByOne) {
   }
 }
 
-TEST(Rgl, TellsItsKnotsAndCountsWhatItClamps) {
+// A colour that falls linearly through 0: entries are interpolated as they are, so that the value stays
+// linear up to where it is cut, beside and beyond the negative entries.
+TEST(Rgl, NegativeEntriesAreInterpolatedAndValuesCut) {
   synthetic::RglRecipe recipe;
-  recipe.rgb = [](int, int c, float x, float) { return c == 1 && x == 0 ? -1.f : 1.f; };
-  const Bytes bytes = synthetic::rgl_file(recipe);
-  const RglTable table = read_rgl(bytes, "name");
-  EXPECT_EQ(table.clamped, std::uint64_t(4 * 5));
-  EXPECT_EQ(read_rgl(bytes, "name", NegativeEntries::keep).clamped, 0U);
+  recipe.vndf = [](int, float, float) { return 1.f; };
+  recipe.rgb = [](int, int c, float x, float) { return c == 1 ? 0.65f - x : 1.f; };
+  recipe.jacobian = false;
+  const RglTable table = read_rgl(synthetic::rgl_file(recipe), "test");
+  const auto difference = [&](const auto& wanted) {
+    double worst = 0;
+    int cut = 0;
+    const Pairs pairs = random_pairs(4000, 0.5f, 11);
+    for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+      const double u = half_vector_on_square(pairs.wo[i], pairs.wi[i]).u;
+      const double got = double(eval(table, pairs.wo[i], pairs.wi[i]).g) * double(pairs.wi[i].z);
+      const double signed_value =
+          double(table.unclipped(shading_geometry(pairs.wo[i], pairs.wi[i])).g) * double(pairs.wi[i].z);
+      EXPECT_NEAR(signed_value, 0.65 - u, 2e-5);
+      worst = std::max(worst, std::abs(got - wanted(u)));
+      cut += got == 0 ? 1 : 0;
+    }
+    EXPECT_GT(cut, 100);
+    return worst;
+  };
+  EXPECT_LT(difference([](double u) { return std::max(0.65 - u, 0.0); }), 2e-5);
+  // The fault: the nodes at u = 3/4 and 1 cut to 0 first.
+  const auto entries_cut = [](double u) { return u < 0.5 ? 0.65 - u : std::max(0.15 * (3 - 4 * u), 0.0); };
+  EXPECT_GT(difference(entries_cut), 2e-2) << "cut entries must show";
+}
+
+TEST(Rgl, ANegativeDistributionOfNormalsIsCutWhereItIsRead) {
+  synthetic::RglRecipe recipe;
+  recipe.vndf = [](int, float, float) { return 1.f; };
+  recipe.rgb = [](int, int c, float, float) { return c == 0 ? -1.f : 1.f; };
+  recipe.sigma = [](float) { return 0.25f; };
+  recipe.ndf = [](float u) { return 0.65f - u; };
+  const RglTable table = read_rgl(synthetic::rgl_file(recipe), "test");
+  const Pairs pairs = random_pairs(4000, 0.5f, 12);
+  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
+    const double u = half_vector_on_square(pairs.wo[i], pairs.wi[i]).u;
+    const Rgb f = eval(table, pairs.wo[i], pairs.wi[i]);
+    ASSERT_NEAR(double(f.g) * double(pairs.wi[i].z), std::max(0.65 - u, 0.0), 2e-5);
+    ASSERT_EQ(f.r, 0) << "two negative factors make no light";
+  }
+  recipe.vndf = [](int, float u, float) { return u > 0.95f ? -1e-3f : 1.f; };
+  EXPECT_THROW(read_rgl(synthetic::rgl_file(recipe), "test"), Error) << "a negative density";
+}
+
+TEST(Rgl, FactsCountEntriesAndValues) {
+  synthetic::RglRecipe recipe;
+  recipe.rgb = [](int t, int c, float x, float) { return c == 1 && (t > 1 || x == 0) ? -1.f : 1.f; };
+  const MeasuredFacts facts = measured_facts(synthetic::rgl_file(recipe), "m.bsdf");
+  EXPECT_EQ(facts.entries, std::uint64_t(8 + 4 * 3 * 25));
+  EXPECT_EQ(facts.negative, std::uint64_t(5 + 5 + 25 + 25));
+  EXPECT_EQ(facts.negative_at, (std::vector<std::uint64_t>{5, 5, 25, 25}));
+  EXPECT_EQ(facts.not_measured, 0U);
+  EXPECT_EQ(facts.clipped[0], 0U);
+  EXPECT_EQ(facts.clipped[2], 0U);
+  // From theta_o = 1.1 on all of green is negative; below .5 little of it.
+  const double share = double(facts.clipped[1]) / double(facts.pairs);
+  EXPECT_GT(share, std::cos(1.1));
+  EXPECT_LT(share, 0.8);
+  EXPECT_EQ(facts.bridged, (std::array<std::uint64_t, 3>{}));
+  std::uint64_t pairs = 0, touched = 0;
+  for (std::size_t i = 0; i < facts.pairs_in_band.size(); ++i)
+    pairs += facts.pairs_in_band[i], touched += facts.touched_in_band[i];
+  EXPECT_EQ(pairs, facts.pairs);
+  EXPECT_EQ(touched, facts.clipped[1]);
+  EXPECT_THROW(measured_facts(synthetic::rgl_file(recipe), "m.bsdf", "linear"), Error);
+  const MeasuredFacts clean = measured_facts(synthetic::rgl_file(), "m.bsdf");
+  EXPECT_EQ(clean.negative, 0U);
+  EXPECT_EQ(clean.clipped, (std::array<std::uint64_t, 3>{}));
+}
+
+TEST(Rgl, TellsItsKnots) {
+  const synthetic::RglRecipe recipe;
+  const RglTable table = read_rgl(synthetic::rgl_file(recipe), "name");
   const BrdfTraits traits = traits_of(table);
   EXPECT_EQ(traits.theta_o_knots, recipe.theta_o);
   EXPECT_EQ(traits.name, "name");
@@ -209,15 +280,15 @@ std::vector<double> numpy_values(const std::string& file, const Pairs& pairs, co
   return values;
 }
 
-// |f cos_i - reference| / (|reference| + 1e-3), the worst channel, sorted; 1e-3 sr^-1 is 1/300 of white
-// paper.
+// |f cos_i - reference| / (|reference| + 1e-3), the worst channel, sorted, with references below 0 read as 0;
+// 1e-3 sr^-1 is 1/300 of white paper.
 std::vector<double> errors(const RglTable& table, const Pairs& pairs, const std::vector<double>& reference) {
   std::vector<double> all;
   for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
     const Rgb f = eval(table, pairs.wo[i], pairs.wi[i]);
     double difference = 0, size = 0;
     for (int c = 0; c < 3; ++c) {
-      const double wanted = reference[3 * i + std::size_t(c)];
+      const double wanted = std::max(reference[3 * i + std::size_t(c)], 0.0);
       difference = std::max(difference, std::abs(double(channel(f, c)) * double(pairs.wi[i].z) - wanted));
       size = std::max(size, std::abs(wanted));
     }
@@ -251,21 +322,28 @@ TEST(Rgl, MeasuredFilesAgreeWithNumpyAndAnotherRenderer) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/rgl")) {
     const std::string file = entry.path().string(), material = entry.path().stem().string();
-    const RglTable table = read_rgl(read_file(file, max_rgl_bytes), file, NegativeEntries::keep);
+    const RglTable table = read_rgl(read_file(file, max_rgl_bytes), file);
     ++files;
 
     const Reference renderer = renderer_values(material);
     ASSERT_EQ(renderer.wo.size(), 200U) << material;
-    double worst = 0, worst_swapped = 0;
+    // Every channel, cut at 0 as a value; and as it is, negative where the data is.
+    double worst = 0, worst_signed = 0, worst_swapped = 0;
     for (std::size_t i = 0; i < 200; ++i) {
-      const float wanted = renderer.f_cos[i].g;
-      const float got = eval(table, renderer.wo[i], renderer.wi[i]).g * renderer.wi[i].z;
-      const float swapped = eval(table, renderer.wi[i], renderer.wo[i]).g * renderer.wo[i].z;
-      worst = std::max(worst, double(std::abs(got - wanted) / (std::abs(wanted) + 1e-3f)));
-      worst_swapped =
-          std::max(worst_swapped, double(std::abs(swapped - wanted) / (std::abs(wanted) + 1e-3f)));
+      const auto error = [](float got, float wanted) {
+        return double(std::abs(got - wanted) / (std::abs(wanted) + 1e-3f));
+      };
+      const Direction wo = renderer.wo[i], wi = renderer.wi[i];
+      const Rgb f = eval(table, wo, wi), as_it_is = table.unclipped(shading_geometry(wo, wi));
+      for (int c = 0; c < 3; ++c) {
+        const float wanted = channel(renderer.f_cos[i], c);
+        worst = std::max(worst, error(channel(f, c) * wi.z, std::max(wanted, 0.f)));
+        worst_signed = std::max(worst_signed, error(channel(as_it_is, c) * wi.z, wanted));
+      }
+      worst_swapped = std::max(worst_swapped, error(eval(table, wi, wo).g * wo.z, renderer.f_cos[i].g));
     }
     EXPECT_LT(worst, 1e-3) << material;
+    EXPECT_LT(worst_signed, 1e-3) << material;
     EXPECT_GT(worst_swapped, 0.1) << material << ": swapped arguments must show";
 
     const std::vector<double> reference = numpy_values(file, pairs, folder);

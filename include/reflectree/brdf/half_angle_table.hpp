@@ -4,7 +4,6 @@
 // al. 2003, "A Data-Driven Reflectance Model".
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,21 +14,26 @@ namespace reflectree {
 
 enum class TableLookup {
   nearest,  // the cell that holds the pair, as MERL's own reader does: piecewise constant
-  linear,   // trilinear between cell centres; phi_d wraps
+  linear,   // trilinear between the centres of measured cells; phi_d wraps
 };
 
 // f(wo, wi) in sr^-1, Rgb. Cell (h, d, p) spans, in units of its index,
 //   n_h sqrt(theta_h / (pi/2)), n_d theta_d / (pi/2), n_p phi_d / period,
 // where period is pi for a reciprocal table and 2 pi otherwise.
+//
+// A negative entry says that nothing was measured there: it is a mark, no value, and is never mixed with one.
+// `nearest` reads it as 0. `linear` leaves it out and gives its weight to the measured corners of the cell;
+// where there is none it reads 0.
 struct HalfAngleTable {
   std::string name = "table";
   int n_h = 0, n_d = 0, n_p = 0;
   bool reciprocal = true;
   TableLookup lookup = TableLookup::nearest;
-  std::vector<float> rgb;     // [h][d][p][3], never negative
-  std::uint64_t clamped = 0;  // entries that were negative in a file and are 0 here
+  std::vector<float> rgb;  // [h][d][p][3]; negative: not measured
 
   Rgb operator()(const ShadingGeometry<float>& g) const;
+  // The share of f(wo, wi) that would come from entries that were not measured: 0 to 1 for each channel.
+  Rgb unmeasured(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
 };
 

@@ -22,6 +22,8 @@ class NeuralBrdf {
   NeuralBrdf(std::string name, std::span<const float, weight_count> weights);
 
   Rgb operator()(const ShadingGeometry<float>& g) const;
+  // The same before it is cut at 0.
+  Rgb unclipped(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
 
  private:

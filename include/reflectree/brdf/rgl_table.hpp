@@ -4,9 +4,10 @@
 //   f cos_i = S(V^-1(m); theta_o) D(m) / (4 sigma(theta_o))
 // with m the half vector on the square, V the warp whose density is the distribution of visible normals,
 // S the measured colour, D the normal distribution and sigma its projected area. Known direction: wo.
+// Noise leaves negative colours in files. They are interpolated as they are and f is cut at 0: cutting them
+// first would brighten their neighbours.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,21 +30,22 @@ struct RglFields {
   bool jacobian = true;  // false: rgb is f cos_i already, without D / (4 sigma)
 };
 
-// f(wo, wi) in sr^-1, Rgb. Finite everywhere; cos_theta_i below 1e-6 counts as 1e-6.
+// f(wo, wi) in sr^-1, Rgb. Finite and not negative everywhere; cos_theta_i below 1e-6 counts as 1e-6.
 class RglTable {
  public:
-  // Sizes must agree and theta_o ascend, as io/rgl.hpp makes sure; asserted. The warp's density is cut at 0.
+  // Sizes must agree, theta_o ascend, and sigma and vndf be no less than 0, as io/rgl.hpp makes sure;
+  // asserted but for the last.
   explicit RglTable(const RglFields& fields);
 
   Rgb operator()(const ShadingGeometry<float>& g) const;
+  // The same before it is cut at 0, where the noise of measurement shows.
+  Rgb unclipped(const ShadingGeometry<float>& g) const;
   // Batches, three channels a pair, zero below the surface: pairs in a row that share wo share its look-up.
   void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<float> out) const;
   void eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const;
   BrdfTraits traits() const;
 
   std::string name;
-  // How many entries of a file were negative and read as 0.
-  std::uint64_t clamped = 0;
 
  private:
   // What depends on wo alone: its pair of nodes, the weight of the upper one, and 4 sigma.
@@ -76,7 +78,7 @@ class RglTable {
   };
   InWarp in_warp(const Known& known, const ShadingGeometry<float>& g) const;
   InColour in_colour(const Known& known, const InWarp& at) const;
-  Rgb value(const Known& known, float u, const InColour& at, float cos_theta_i) const;
+  Rgb unclipped(const Known& known, float u, const InColour& at, float cos_theta_i) const;
 
   std::vector<float> theta_o_, sigma_, ndf_;
   std::vector<WarpNode> warp_;  // [theta_o pair][v][u]

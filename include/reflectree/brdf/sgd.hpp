@@ -18,13 +18,20 @@ struct SgdChannel {
 
 // Shifted Gamma distribution: f = (kd + ks F D G(theta_o) G(theta_i) / (cos_o cos_i)) / pi per channel.
 // Bagher, Soler, Holzschuch 2012, "Accurate fitting of measured reflectances using a Shifted Gamma
-// micro-facet distribution", eqs. 8-12. Where the fitted Fresnel term turns negative it counts as 0.
+// micro-facet distribution", eqs. 8-12. The fitted Fresnel term may turn negative; f is cut at 0, the term is
+// not.
 struct Sgd {
   std::string name = "sgd";
   SgdChannel channels[3];
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
+    const RgbT<T> f = unclipped(g);
+    return {max(f.r, T(0)), max(f.g, T(0)), max(f.b, T(0))};
+  }
+  // The same before it is cut at 0.
+  template <class T>
+  RgbT<T> unclipped(const ShadingGeometry<T>& g) const {
     const T cos2_h = max(sqr(g.cos_theta_h), T(1e-12f));
     const Wide<T> theta_o = polar_angle(g.wo), theta_i = polar_angle(g.wi);
     const Common<T> common{sin2_theta(g.wh) / cos2_h,
@@ -85,7 +92,7 @@ struct Sgd {
   template <class T>
   static T value(const SgdChannel& c, const Common<T>& common) {
     const T fresnel = T(c.f0) - common.cos_theta_d * T(c.f1) + (T(1) - T(c.f0)) * common.fresnel_power;
-    const T facets = max(fresnel, T(0)) * distribution(c, common) * T(masking(c, common.theta_o)) *
+    const T facets = fresnel * distribution(c, common) * T(masking(c, common.theta_o)) *
                      T(masking(c, common.theta_i)) * common.inverse_cosines;
     return (T(c.kd) + T(c.ks) * facets) / pi_v<T>;
   }

@@ -15,7 +15,7 @@ inline constexpr std::uint64_t max_merl_bytes = 69'984'012;
 bool is_merl_file(ByteView bytes);
 
 // Throws Error for files that are damaged. `where` names the file in errors and becomes the table's name.
-// Entries that were not measured are negative in the file and 0 here: a linear look-up fades towards them.
+// Entries that were not measured are negative in the file and here; HalfAngleTable says what they count for.
 HalfAngleTable read_merl(ByteView bytes, const std::string& where, TableLookup lookup = TableLookup::nearest);
 
 // Tabulates an isotropic BRDF of 1 or 3 channels with MERL's cells, each at cell_centre(). A reciprocal

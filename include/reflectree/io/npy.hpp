@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of floats as NumPy's .npy files (format 1.0, little-endian, C order).
+// Arrays as NumPy's .npy files (format 1.0, little-endian, C order).
 #pragma once
 
 #include <span>
@@ -8,8 +8,9 @@
 
 namespace reflectree {
 
-// The bytes of a file that numpy.load() reads as a float32 array of that shape. The product of the shape is
-// the number of values.
+// The bytes of a file that numpy.load() reads as a float32 or float64 array of that shape. The product of the
+// shape is the number of values.
 Bytes encode_npy(std::span<const float> values, std::span<const std::size_t> shape);
+Bytes encode_npy(std::span<const double> values, std::span<const std::size_t> shape);
 
 }  // namespace reflectree

@@ -7,17 +7,16 @@
 
 namespace reflectree {
 
-// What becomes of the negative colours that measurement noise leaves in a file.
-enum class NegativeEntries { clamp, keep };  // keep: only to compare with readers that do
-
 inline constexpr std::uint64_t max_rgl_bytes = std::uint64_t(64) << 20U;
 
 // Whether the bytes are a tensor_file of any kind.
 bool is_tensor_file(ByteView bytes);
 
-// Throws Error for files that are damaged, anisotropic, spectral, or not a material. `where` names the file
-// in errors and becomes the table's name.
-RglTable read_rgl(ByteView bytes, const std::string& where,
-                  NegativeEntries negatives = NegativeEntries::clamp);
+// The numbers of a file. Throws Error for files that are damaged, anisotropic, spectral, or not a material.
+// `where` names the file in errors and becomes the material's name.
+RglFields read_rgl_fields(ByteView bytes, const std::string& where);
+
+// The same as a BRDF.
+RglTable read_rgl(ByteView bytes, const std::string& where);
 
 }  // namespace reflectree
