@@ -44,6 +44,7 @@ Host Context::host(const std::string& label) const {
   if (!quiet) {
     const auto progress = std::make_shared<Progress>(label);
     host.progress = [progress](float fraction) { progress->show(fraction); };
+    host.stage = [progress](const char* words) { progress->stage(words); };
   }
   return host;
 }

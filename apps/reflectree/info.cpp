@@ -73,6 +73,7 @@ Json json_of(const Subject& s, const std::vector<MeasuredFile>& measured) {
             {"one_shot_variance", shortest(d.report.one_shot_variance)},
             {"asymmetry", shortest(d.report.asymmetry)},
             {"evaluations", d.report.evaluations},
+            {"notes", d.report.notes},
             {"build_seconds", nullptr}};
   if (s.file_size) json["bytes_on_disk"] = *s.file_size;
   if (s.build_seconds) json["build_seconds"] = *s.build_seconds;
@@ -116,8 +117,8 @@ void show_info(const Context& context, const std::string& command, const Subject
   line("bounds", bounds_text(s));
   line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(*s.packed)) / 1024));
   if (s.file_size) line("on disk", fmt::format("{:.1f} KiB", double(*s.file_size) / 1024));
-  line("albedo of target", fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g}", *low,
-                                       *high, d.albedo.albedo.size(), d.albedo.relative_error));
+  line("albedo of target", fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g} up to 89.9 degrees",
+                                       *low / d.target.scale, *high / d.target.scale, d.albedo.albedo.size(), d.albedo.relative_error));
   line("expected trials", fmt::format("{:.4g} in the worst slab", d.report.expected_trials));
   line("overshoot mass",
        fmt::format("{:.2g} in the worst slab, as the build's attack estimates it", d.report.overshoot_mass));
@@ -125,6 +126,7 @@ void show_info(const Context& context, const std::string& command, const Subject
   line("asymmetry", fmt::format("{:.2g} between mirror images", d.report.asymmetry));
   line("evaluations", std::to_string(d.report.evaluations));
   if (s.build_seconds) line("build", fmt::format("{:.2f} s", *s.build_seconds));
+  for (const std::string& note : d.report.notes) line("note", note);
   for (const MeasuredFile& file : measured) {
     for (const auto& [name, value] : measured_lines(file)) line(name, value);
   }

@@ -100,10 +100,18 @@ Row judge(const HardFunction& hard, double limit, bool stages, const Host& threa
   } catch (const Cancelled&) {
     row.seconds = seconds(), row.verdict = "TOO LONG", row.wrong = true;
   } catch (const std::exception& e) {
-    row.seconds = seconds(), row.verdict = hard.refused ? "refused" : "REFUSED", row.words = e.what();
-    row.wrong = !hard.refused;
+    row.seconds = seconds(), row.words = e.what();
+    row.wrong = !hard.refused && !hard.may_be_refused;
+    row.verdict = row.wrong ? "REFUSED" : "refused";
   }
   return row;
+}
+
+// A cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string safe;
+  for (const char c : text) safe += c == '|' ? std::string("\\|") : std::string(1, c);
+  return safe;
 }
 
 int run(int argc, char** argv) {
@@ -130,8 +138,8 @@ int run(int argc, char** argv) {
       }
       const Row r = judge(hard, limit, stages, host);
       std::printf("| %s | %s | %s | %.2f | %.2f | %s | %zu | %zu | %.3f | %.4f | %.2g | %s |\n", hard.name.c_str(),
-                  hard.what.c_str(), r.verdict.c_str(), r.seconds, r.cpu, r.domain.c_str(), r.slabs, r.leaves, r.trials,
-                  r.variance, r.p, r.words.c_str());
+                  cell(hard.what).c_str(), r.verdict.c_str(), r.seconds, r.cpu, r.domain.c_str(), r.slabs, r.leaves, r.trials,
+                  r.variance, r.p, cell(r.words).c_str());
       std::fflush(stdout);
       wrong = wrong || r.wrong;
     }

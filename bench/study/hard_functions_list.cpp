@@ -104,11 +104,11 @@ bool odd(float x) { return (int(std::floor(x)) & 1) != 0; }
 
 template <class F>
 HardFunction of(const char* name, const char* what, F f) {
-  return {name, what, [f] { return AnyBrdf(f); }, false, {}};
+  return {name, what, [f] { return AnyBrdf(f); }};
 }
 template <class F>
 HardFunction refused(const char* name, const char* what, F f) {
-  return {name, what, [f] { return AnyBrdf(f); }, true, {}};
+  return {name, what, [f] { return AnyBrdf(f); }, true};
 }
 HardFunction near(HardFunction f, std::function<Direction(Direction)> centre) {
   f.centre = std::move(centre);
@@ -175,6 +175,7 @@ void add_needles(std::vector<HardFunction>& list) {
   const auto needle = [&list](const char* name, const char* what, Needle n, bool declared) {
     HardFunction f = declared ? of(name, what, DeclaredNeedle{n}) : of(name, what, n);
     f.centre = [n](Direction) { return n.centre(); };
+    f.may_be_refused = !declared;
     list.push_back(std::move(f));
   };
   needle("needle beside", "width 1e-3 off the plane of incidence, on a ground", {0.7f, 1.9f, 1e-3f, 1e5f, 0.1f}, false);
@@ -282,8 +283,7 @@ void add_manners(std::vector<HardFunction>& list) {
                     const auto calls = std::make_shared<std::atomic<int>>(0);
                     return AnyBrdf([calls](Direction, Direction) { return 0.2f + 1e-6f * float((*calls)++); });
                   },
-                  true,
-                  {}});
+                  true});
   list.push_back(refused("throwing", "throws where cos_i < 0.01", [](Direction, Direction i) {
     if (i.z < 0.01f) throw std::runtime_error("no data below 0.6 degrees");
     return 0.2f;

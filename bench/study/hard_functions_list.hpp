@@ -17,6 +17,7 @@ struct HardFunction {
   std::string name, what;
   std::function<AnyBrdf()> make;  // may throw, as building may
   bool refused = false;           // no sampler can be right: a sentence is expected
+  bool may_be_refused = false;    // right, or a sentence
   // Where the judge's chart is to look closest, for wo at azimuth 0; default: where a search finds f highest.
   std::function<Direction(Direction wo)> centre = {};
 };

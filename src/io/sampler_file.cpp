@@ -183,6 +183,11 @@ void read_report(ByteReader& in, SamplerData& data) {
   r.evaluations = in.u64();
 }
 
+void read_notes(ByteReader& in, SamplerData& data) {
+  data.report.notes.resize(read_count(in, 4, 64));
+  for (std::string& note : data.report.notes) note = read_words(in);
+}
+
 struct ChunkReader {
   std::string_view tag;
   bool required;
@@ -199,6 +204,9 @@ constexpr ChunkReader chunk_readers[] = {
     {"ALBD", true, read_albedo},
     {"PROB", true, read_probes},
     {"REPT", false, read_report},
+    {"SCAL", false, [](ByteReader& in, SamplerData& data) { data.target.scale = read_float(in); }},
+    {"PRCH", false, [](ByteReader& in, SamplerData& data) { data.probes.channels = read_floats(in); }},
+    {"NOTE", false, read_notes},
 };
 
 const ChunkReader* find_reader(std::string_view tag) {
@@ -276,6 +284,17 @@ Bytes encode_sampler(const SamplerData& data) {
     append_u64(p, r.evaluations);
   };
   chunk("REPT", report, optional_flag);
+  // What most samplers have not: an older reader must not overlook a scale.
+  if (data.target.scale != 1) chunk("SCAL", [&](Bytes& p) { append_f32(p, data.target.scale); });
+  if (!data.probes.channels.empty())
+    chunk("PRCH", [&](Bytes& p) { append_floats(p, data.probes.channels); }, optional_flag);
+  if (!data.report.notes.empty()) {
+    const auto notes = [&](Bytes& p) {
+      append_u32(p, std::uint32_t(data.report.notes.size()));
+      for (const std::string& note : data.report.notes) append_words(p, note);
+    };
+    chunk("NOTE", notes, optional_flag);
+  }
   append_u32(out, crc32(out));
   return out;
 }

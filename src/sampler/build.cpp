@@ -146,7 +146,9 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Survey& survey, con
     // A lobe that was met by chance is better looked at from the start than grown around blindly.
     if (survey.towers && !survey.towers->empty() && report.overshoot_mass > 0.02f) break;
     maximise(slabs, first_new, survey);
-    const float per_leaf = clamp(1.5e6f / float(leaf_count(slabs)), 400.f, 20000.f);
+    // However many leaves there are, a pass has an end.
+    const auto leaves = float(leaf_count(slabs));
+    const float per_leaf = min(clamp(1.5e6f / leaves, 400.f, 20000.f), max(2e7f / leaves, 40.f));
     probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey,
           overshoot);
     report.overshoot_mass = *std::max_element(overshoot.begin(), overshoot.end());

@@ -136,6 +136,11 @@ void validate(const SamplerData& data) {
   if (a.cos_theta_o.front() != min_cos_theta_o || a.cos_theta_o.back() != 1) {
     fail("the nodes do not span the hemisphere", "albedo table");
   }
+  if (!(data.target.scale > 0 && std::isfinite(data.target.scale))) fail("the scale is not a positive number", "target");
+  const std::vector<float>& channels = data.probes.channels;
+  if (channels.size() % BrdfProbes::count != 0 || channels.size() > BrdfProbes::count * std::size_t(max_channels)) {
+    fail("a value of every channel is needed at every pair", "probes");
+  }
   const Domain& d = data.domain;
   if (std::uint8_t(d.kind) > std::uint8_t(DomainKind::normal_vector)) fail("unknown domain", "domain");
   if (!(d.exponent >= 0 && d.exponent < 2)) fail("the exponent is not in [0, 2)", "domain");

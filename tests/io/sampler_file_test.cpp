@@ -72,6 +72,22 @@ TEST(SamplerFile, ReadsWhatItWrites) {
   EXPECT_EQ(encode_sampler(decode_sampler(bytes, "file")), bytes);
 }
 
+// What most samplers have not costs no byte where it is absent.
+TEST(SamplerFile, ScaleNotesAndProbesOfChannelsReturn) {
+  SamplerData data = synthetic::sampler_data();
+  const std::size_t plain = encode_sampler(data).size();
+  data.target.scale = 0x1p80f;
+  data.report.notes = {"exact mode takes 2 trials", "and more"};
+  data.probes.channels.assign(2 * BrdfProbes::count, 0.5f);
+  const Bytes bytes = encode_sampler(data);
+  EXPECT_EQ(decode_sampler(bytes, "file"), data);
+  EXPECT_GT(bytes.size(), plain + 2 * BrdfProbes::count * 4);
+  data.target.scale = 0;
+  EXPECT_THROW(encode_sampler(data), Error);
+  data.target.scale = 1, data.probes.channels.pop_back();
+  EXPECT_THROW(encode_sampler(data), Error);
+}
+
 TEST(SamplerFile, SavesAndLoadsABuiltSamplerThatSamplesAlike) {
   const AnyBrdf f = make_brdf(parse_material("ggx:alpha=0.5"));
   const SamplerData data = build(f);

@@ -58,6 +58,8 @@ struct AlbedoTable {
 struct BrdfProbes {
   static constexpr std::size_t count = 64;
   std::array<float, count> target{};
+  // Of functions without a name also every channel, pair after pair: a name says which channels are meant.
+  std::vector<float> channels;
   friend bool operator==(const BrdfProbes&, const BrdfProbes&) = default;
 };
 
