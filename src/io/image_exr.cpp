@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenEXR through memory: what is read is one span of bytes, what is written appears by a rename.
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfCompression.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 #include <cstring>
@@ -67,6 +69,30 @@ Imf::FrameBuffer frame_of(Image& image, int x0, int y0) {
   return frame;
 }
 
+// The file's R, G and B, of every layer, as sRGB's; without adaptation of the white point, as in Mitsuba.
+void to_srgb_primaries(Image& image, const Imf::Chromaticities& own) {
+  const Imf::Chromaticities srgb;
+  const auto apart = [](Imath::V2f a, Imath::V2f b) { return (a - b).length2(); };
+  if (apart(own.red, srgb.red) + apart(own.green, srgb.green) + apart(own.blue, srgb.blue) +
+          apart(own.white, srgb.white) <
+      1e-6f)
+    return;
+  const Imath::M44f m = Imf::RGBtoXYZ(own, 1) * Imf::XYZtoRGB(srgb, 1);
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    const std::string& name = image.channels[c];
+    if (name.back() != 'R' || (name.size() > 1 && name[name.size() - 2] != '.')) continue;
+    const std::string layer = name.substr(0, name.size() - 1);
+    const int g = image.find(layer + "G"), b = image.find(layer + "B");
+    if (g < 0 || b < 0) continue;
+    for (std::size_t i = 0; i < image.values.size(); i += image.channels.size()) {
+      float &vr = image.values[i + c], &vg = image.values[i + std::size_t(g)],
+            &vb = image.values[i + std::size_t(b)];
+      const Imath::V3f rgb = Imath::V3f(vr, vg, vb) * m;
+      vr = rgb.x, vg = rgb.y, vb = rgb.z;
+    }
+  }
+}
+
 }  // namespace
 
 Image read_exr(ByteView bytes, const std::string& where) {
@@ -79,6 +105,8 @@ Image read_exr(ByteView bytes, const std::string& where) {
       if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
         throw std::runtime_error("channels of several resolutions");
       }
+      if (c.channel().type == Imf::UINT)
+        throw std::runtime_error(std::string("channel ") + c.name() + " holds whole numbers, not light");
       names.emplace_back(c.name());
     }
     const std::int64_t width = std::int64_t(box.max.x) - box.min.x + 1,
@@ -92,6 +120,7 @@ Image read_exr(ByteView bytes, const std::string& where) {
     }
     file.setFrameBuffer(frame_of(image, box.min.x, box.min.y));
     file.readPixels(box.min.y, box.max.y);
+    if (Imf::hasChromaticities(file.header())) to_srgb_primaries(image, Imf::chromaticities(file.header()));
     return image;
   } catch (const std::exception& error) {
     throw Error(std::string("OpenEXR cannot read it (") + error.what() + ")", where, "fetch the file again");

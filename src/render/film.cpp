@@ -54,7 +54,8 @@ std::uint64_t identity_of(const Scene& s, const RenderOptions& o) {
 
 Direction through(const Scene& scene, float x, float y) {
   const Camera& c = scene.camera;
-  const float px = 1 - 2 * x / float(scene.width), py = 1 - 2 * y / float(scene.height);
+  const float px = 1 - 2 * (x / float(scene.width) + c.shift_x),
+              py = 1 - 2 * (y / float(scene.height) + c.shift_y);
   return normalize(c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up);
 }
 

@@ -39,6 +39,7 @@ Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool f
     return i >= 0 && at < v.size() ? v[at] : 0.f;
   };
   Mesh mesh;
+  mesh.has_uv = false;
   std::map<std::array<int, 3>, std::uint32_t> known;  // corners that share all three share a vertex
   for (const auto& shape : reader.GetShapes()) {
     const auto& corners = shape.mesh.indices;
@@ -61,7 +62,10 @@ Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool f
                       number(a.normals, c.normal_index, 3, 2)};
         }
         v.uv = {number(a.texcoords, c.texcoord_index, 2, 0), number(a.texcoords, c.texcoord_index, 2, 1)};
-        if (flip_v) v.uv.y = 1 - v.uv.y;
+        if (c.texcoord_index >= 0) {
+          mesh.has_uv = true;
+          if (flip_v) v.uv.y = 1 - v.uv.y;
+        }
         mesh.vertices.push_back(v);
       }
       mesh.triangles.push_back(triangle);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sampled spectra to linear sRGB, as Mitsuba's RGB variants do: by the CIE 1931 functions, a reflectance seen
-// under D65, an emission as it is; Y of a constant 1 is 1. Tables are interpolated linearly at every nm.
+// Sampled spectra to linear sRGB, as Mitsuba's RGB variants do: by the CIE 1931 functions, a reflectance or
+// an index seen under D65, an emission as it is; Y of a constant 1 is 1. Tables are interpolated linearly at
+// every nm.
 #include "scene_colour.hpp"
 
 #include <algorithm>
@@ -33,11 +34,11 @@ CieRow row_at(int nm) {
 
 }  // namespace
 
-Rgb to_linear_srgb(const SampledSpectrum& spectrum, bool reflectance) {
+Rgb to_linear_srgb(const SampledSpectrum& spectrum, ColourOf of) {
   double xyz[3] = {}, white = 0;
   for (int nm = 360; nm <= 830; ++nm) {
     const CieRow row = row_at(nm);
-    const double light = reflectance ? row.d65 : 1, v = at(spectrum, nm);
+    const double light = of == ColourOf::light ? 1 : row.d65, v = at(spectrum, nm);
     for (int k = 0; k < 3; ++k) xyz[k] += v * light * row.xyz[k];
     white += light * row.xyz[1];
   }
@@ -47,7 +48,9 @@ Rgb to_linear_srgb(const SampledSpectrum& spectrum, bool reflectance) {
   };
   const Rgb c{row(3.240479, -1.537150, -.498535), row(-.969256, 1.875991, .041556),
               row(.055648, -.204043, 1.057311)};
-  const auto kept = [&](float v) { return std::max(0.f, reflectance ? std::min(v, 1.f) : v); };
+  const auto kept = [&](float v) {
+    return std::max(0.f, of == ColourOf::reflectance ? std::min(v, 1.f) : v);
+  };
   return {kept(c.r), kept(c.g), kept(c.b)};
 }
 

@@ -20,7 +20,7 @@ void require_sound(const Mesh& mesh) {
 
 void run_ply(ByteView bytes) {
   for (const bool flat : {false, true})
-    expect_error_or_success([&] { require_sound(read_ply(bytes, "mesh", flat)); });
+    expect_error_or_success([&] { require_sound(read_ply(bytes, "mesh", flat, flat)); });
 }
 
 void run_obj(ByteView bytes) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,7 +20,8 @@ using Point = Vec3<float>;
 
 struct Surface {
   ScatteringPtr scattering;
-  Rgb radiance;  // emitted to the side of the normal
+  Rgb radiance;        // emitted to the side of the normal
+  bool has_uv = true;  // otherwise, of a mesh, u and v are the shares of a triangle's second and third corner
 };
 
 // `normal`: for shading, interpolated; zero: the triangle's own, (p1 - p0) x (p2 - p0).
@@ -60,6 +62,9 @@ struct DirectionalLight {
 struct Camera {
   Point origin, left, up, forward;  // an orthonormal basis
   float tan_x = 1, tan_y = 1;       // half the picture's width and height at distance 1
+  float shift_x = 0,
+        shift_y = 0;  // what the picture shows lies so much to the right and below, in sizes of it
+  float near = 0, far = std::numeric_limits<float>::infinity();  // along `forward`; the rest is not seen
 };
 
 // What weighs a camera ray by its place about a pixel's centre.
