@@ -89,13 +89,14 @@ def main():
     parser.add_argument("--table", type=pathlib.Path)
     parser.add_argument("--store", action="store_true")
     parser.add_argument("--stored", action="store_true", help="do not ask Mitsuba")
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default="", help="rows whose group or word has this in it")
+    parser.add_argument("--verbose", action="store_true", help="all twelve numbers of each")
     o = parser.parse_args()
     stored = load()
     mitsuba = None if o.stored else Mitsuba(mitsuba_python(o.venv.resolve()))
     lines, wrong, n = [], 0, 0
     for row in ROWS:
-        if o.only not in row.word:
+        if o.only not in f"{row.group}: {row.word}":
             continue
         with tempfile.TemporaryDirectory() as folder:
             theirs = mitsuba.render(row, pathlib.Path(folder)) if mitsuba else stored[key(row)]
@@ -107,10 +108,10 @@ def main():
         wrong, n = wrong + (not good), n + 1
         shown = text(theirs["numbers"]) if "numbers" in theirs else "refuses"
         lines.append((row, text(ours) if ours else "refuses", shown, ratio, distance, words))
-        if not good or o.only:
+        if not good or o.verbose or o.only:
             print(f"{row.word}: {words}; ours {text(ours) if ours else said.strip()}; Mitsuba "
                   f"{shown if 'numbers' in theirs else theirs['error']}; {ratio} {distance}", flush=True)
-            if o.only and ours and "numbers" in theirs:
+            if o.verbose and ours and "numbers" in theirs:
                 for a, b in zip(ours, theirs["numbers"]):
                     print(f"   {a[0]:.5f} {b[0]:.5f}  {a[1]:.5f} {b[1]:.5f}")
     print(f"{n} rows, {wrong} wrong")

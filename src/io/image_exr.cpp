@@ -106,7 +106,8 @@ Image read_exr(ByteView bytes, const std::string& where) {
         throw std::runtime_error("channels of several resolutions");
       }
       if (c.channel().type == Imf::UINT)
-        throw std::runtime_error(std::string("channel ") + c.name() + " holds whole numbers, not light");
+        throw Error(std::string("channel ") + c.name() + " holds whole numbers, not light", where,
+                    "save it as half or float");
       names.emplace_back(c.name());
     }
     const std::int64_t width = std::int64_t(box.max.x) - box.min.x + 1,
@@ -122,6 +123,8 @@ Image read_exr(ByteView bytes, const std::string& where) {
     file.readPixels(box.min.y, box.max.y);
     if (Imf::hasChromaticities(file.header())) to_srgb_primaries(image, Imf::chromaticities(file.header()));
     return image;
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception& error) {
     throw Error(std::string("OpenEXR cannot read it (") + error.what() + ")", where, "fetch the file again");
   }

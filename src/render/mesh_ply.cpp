@@ -163,9 +163,8 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool f
   }
   if (face_normals) {
     for (Vertex& v : mesh.vertices) v.normal = {};
-  } else if (!normals) {
-    compute_normals(mesh);
   }
+  mesh.smooth = !face_normals && !normals;
   return mesh;
 }
 

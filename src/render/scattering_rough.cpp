@@ -57,11 +57,13 @@ struct RoughPlastic final : Each<RoughPlastic> {
   float inside = 0, specular_weight;
   RoughPlastic(Plastic parameters, Roughness r)
       : p(std::move(parameters)), normals(r), specular_weight(specular_share(p)) {
+    r.sample_visible = true;  // the means are over visible normals, however directions are drawn
+    const Microfacets visible(r);
     double sum = 0;
     for (std::size_t i = 0; i < nodes; ++i) {
       const float mu = max(1e-6f, float(i) / float(nodes - 1));
-      through[i] = rough_transmittance(normals, mu, p.eta, 32);
-      sum += double(rough_reflectance(normals, mu, 1 / p.eta, 128) * mu);
+      through[i] = rough_transmittance(visible, mu, p.eta, 32);
+      sum += double(rough_reflectance(visible, mu, 1 / p.eta, 128) * mu);
     }
     inside = float(2 * sum / double(nodes));
   }

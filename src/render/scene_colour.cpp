@@ -24,10 +24,11 @@ double at(const SampledSpectrum& s, double wavelength) {
   return s.back().second;
 }
 
-CieRow row_at(int nm) {
-  const CieRow* a = cie_1931 + std::min<std::ptrdiff_t>((nm - 360) / 5, std::ssize(cie_1931) - 2);
+CieRow row_at(double nm) {
+  const CieRow* a =
+      cie_1931 + std::min<std::ptrdiff_t>(std::ptrdiff_t(nm - 360) / 5, std::ssize(cie_1931) - 2);
   const double t = (nm - a->nm) / 5.;
-  CieRow r{nm, {}, std::lerp(a[0].d65, a[1].d65, t)};
+  CieRow r{a->nm, {}, std::lerp(a[0].d65, a[1].d65, t)};
   for (int k = 0; k < 3; ++k) r.xyz[k] = std::lerp(a[0].xyz[k], a[1].xyz[k], t);
   return r;
 }
@@ -36,7 +37,9 @@ CieRow row_at(int nm) {
 
 Rgb to_linear_srgb(const SampledSpectrum& spectrum, ColourOf of) {
   double xyz[3] = {}, white = 0;
-  for (int nm = 360; nm <= 830; ++nm) {
+  // Mitsuba's thousand points: a spectrum may end between them.
+  for (int i = 0; i < 1000; ++i) {
+    const double nm = 360 + 470 * (i / 999.);
     const CieRow row = row_at(nm);
     const double light = of == ColourOf::light ? 1 : row.d65, v = at(spectrum, nm);
     for (int k = 0; k < 3; ++k) xyz[k] += v * light * row.xyz[k];

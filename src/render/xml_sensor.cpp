@@ -38,12 +38,13 @@ void want(const XmlReader& xml, Node film, const char* name, Names words) {
 void read_film(const XmlReader& xml, Node n, Scene& scene) {
   if (XmlReader::type(n) != "hdrfilm") xml.unknown(n);
   xml.only(n, {"width", "height", "rfilter", "pixel_format", "file_format", "component_format", "banner",
-               "compensate"});
+               "compensate", "sample_border"});
   want(xml, n, "pixel_format", {"rgb", "rgba"});
   want(xml, n, "file_format", {"openexr", "exr"});
   want(xml, n, "component_format", {"float32", "float16"});
   xml.flag(n, "banner", false), xml.flag(n, "compensate", false);
   read_filter(xml, xml.child(n, "rfilter"), scene.filter);
+  scene.filter.beyond = xml.flag(n, "sample_border", false);
   const int width = xml.integer(n, "width", 768), height = xml.integer(n, "height", 576);
   if (!(width >= 1 && height >= 1 && width <= 65536 && height <= 65536))
     xml.fail(n, "a film without pixels", "give it a positive width and height");

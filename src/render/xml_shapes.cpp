@@ -36,13 +36,20 @@ bool within_reach(Point p) { return render::within_reach(to_double(p)); }
 
 void add_mesh(const XmlReader& xml, Node n, Mesh mesh, const Matrix& m, bool flip, std::uint32_t surface,
               Scene& scene) {
-  const auto base = std::uint32_t(scene.vertices.size());
-  scene.surfaces[surface].has_uv = mesh.has_uv;
-  for (Vertex v : mesh.vertices) {
+  using Mapping = Surface::Mapping;
+  scene.surfaces[surface].mapping = mesh.has_uv ? Mapping::vertices
+                                    : flip      ? Mapping::swapped_corners
+                                                : Mapping::corners;
+  for (Vertex& v : mesh.vertices) {
     v.at = apply(m, {v.at.x, v.at.y, v.at.z}, 1);
-    v.normal = apply_to_normal(m, flip ? -v.normal : v.normal);
     if (!within_reach(v.at) || !finite(v.normal))
       xml.fail(n, "a corner that does not exist, is not finite or beyond 1e15", "mend the mesh");
+    v.normal = apply_to_normal(m, v.normal);
+  }
+  if (mesh.smooth) compute_normals(mesh);  // of the triangles as they are now
+  const auto base = std::uint32_t(scene.vertices.size());
+  for (Vertex& v : mesh.vertices) {
+    if (flip) v.normal = -v.normal;
     scene.vertices.push_back(v);
   }
   for (auto corner : mesh.triangles) {
@@ -69,7 +76,8 @@ void add_sphere(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::u
   const auto centre = apply_double(m, xml.point(n, "center", {}), 1);
   if (!render::within_reach(centre) || !(radius * scale <= largest_coordinate))
     xml.fail(n, "the sphere reaches beyond 1e15", "use larger units");
-  scene.spheres.push_back({centre, radius * scale, flip, {unit(x), unit(y), unit(z)}, surface});
+  const bool mirrored = dot(cross(x, y), z) < 0;  // turns the sphere inside out, as in Mitsuba
+  scene.spheres.push_back({centre, radius * scale, flip != mirrored, {unit(x), unit(y), unit(z)}, surface});
 }
 
 void add_flat(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::uint32_t surface,
@@ -137,7 +145,10 @@ void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& 
       const Bytes bytes = read_file(path, largest_mesh_file);
       return type == "obj" ? read_obj(bytes, path, flat, flip_v) : read_ply(bytes, path, flat, flip_v);
     };
-    add_mesh(xml, n, xml.placed(n, read), m, flip, index, scene);
+    const Mesh mesh = xml.placed(n, read);
+    if (mesh.triangles.empty())
+      xml.fail(n, path + " holds no triangles", "name a mesh, or leave the shape out");
+    add_mesh(xml, n, mesh, m, flip, index, scene);
   } else {
     xml.unknown(n);
   }

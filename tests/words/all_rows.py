@@ -4,9 +4,11 @@ import hashlib
 import json
 import pathlib
 
+import rows_numbers
 import rows_pixels
+import rows_shapes
 
-ROWS = [*rows_pixels.ROWS]
+ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS]
 STORED = pathlib.Path(__file__).resolve().parent / "mitsuba.json"
 
 

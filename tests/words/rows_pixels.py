@@ -21,10 +21,10 @@ def share(rows, by=255):
     return [[tuple(v / by for v in p) for p in r] for r in rows]
 
 
-def both(word, file, data, more="", **others):
+def both(word, file, data, more="", sky_why="", **others):
     """As a texture and as a sky."""
     return [Row("pixels", f"texture: {word}", *picture(file, data, more), **others),
-            Row("pixels", f"sky: {word}", *sky(file, data), **others)]
+            Row("pixels", f"sky: {word}", *sky(file, data), **{"why": sky_why, **others})]
 
 
 LINEAR = share(SPOTS)
@@ -57,11 +57,14 @@ ROWS = [
     *both("OpenEXR, Y and A", "a.exr", exr([[(p[0], p[3]) for p in r] for r in share(with_alpha(SPOTS))], "YA")),
     *both("OpenEXR, X, Y, Z", "a.exr", exr(LINEAR, "XYZ")),
     *both("OpenEXR, R half, G and B float", "a.exr", exr(LINEAR, "RGB", ["half", "float", "float"])),
-    *both("OpenEXR, layer diffuse alone", "a.exr", exr(LINEAR, ["diffuse.R", "diffuse.G", "diffuse.B"])),
-    *both("OpenEXR, small letters r, g, b", "a.exr", exr(LINEAR, "rgb")),
+    *both("OpenEXR, layer diffuse alone", "a.exr", exr(LINEAR, ["diffuse.R", "diffuse.G", "diffuse.B"]),
+          sky_why="Mitsuba takes such textures and refuses such skies"),
+    *both("OpenEXR, small letters r, g, b", "a.exr", exr(LINEAR, "rgb"),
+          sky_why="Mitsuba takes such textures and refuses such skies"),
     *both("OpenEXR, ACES chromaticities", "a.exr", exr(LINEAR, "RGB", chromaticities=(
         .7347, .2653, 0, 1, .0001, -.077, .32168, .33767))),
-    *both("OpenEXR, data window off 0", "a.exr", exr(LINEAR, "RGB", window=(3, -5))),
+    *both("OpenEXR, data window off 0", "a.exr", exr(LINEAR, "RGB", window=(3, -5)),
+          why="Mitsuba reads beyond its memory; the window's own pixels are meant"),
     *both("OpenEXR, uint, RGB", "a.exr", exr([[tuple(v << 23 for v in p) for p in r] for r in SPOTS], "RGB", "uint"),
           error="whole numbers"),
     *both("OpenEXR, R and B without G", "a.exr", exr([[(p[0], p[2]) for p in r] for r in LINEAR], "RB"),
@@ -85,4 +88,6 @@ ROWS = [
         '<scale x="1.5"/></transform>')),
     Row("pixels", "texture: 1 x 1 pixel", *picture("a.png", png([[(200, 100, 50)]]))),
     Row("pixels", "sky: 1 x 1 pixel", *sky("a.png", png([[(200, 100, 50)]]))),
+    Row("pixels", "sky: 2 x 2 pixels", *sky("a.png", png([r[:2] for r in SPOTS[:2]]))),
+    Row("pixels", "sky: 1 x 4 pixels", *sky("a.png", png([[r[0]] for r in [*SPOTS, SPOTS[1]]]))),
 ]

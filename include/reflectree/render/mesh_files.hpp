@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangle meshes from OBJ and PLY files. A mesh without normals gets smooth ones, as in Mitsuba; with
-// `face_normals`, none, and each triangle its own.
+// Triangle meshes from OBJ and PLY files. A mesh without normals is `smooth`, as in Mitsuba; with
+// `face_normals` it is not, and each triangle has its own.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ namespace reflectree::render {
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  bool has_uv = true;  // texture coordinates, at some vertex at least
+  bool has_uv = true;   // texture coordinates, at some vertex at least
+  bool smooth = false;  // compute_normals is to be called, once the vertices are where they stay
 };
 
 // Polygons become fans. `path` is named by errors. Throw Error.

@@ -20,8 +20,10 @@ using Point = Vec3<float>;
 
 struct Surface {
   ScatteringPtr scattering;
-  Rgb radiance;        // emitted to the side of the normal
-  bool has_uv = true;  // otherwise, of a mesh, u and v are the shares of a triangle's second and third corner
+  Rgb radiance;  // emitted to the side of the normal
+  // How triangles get u and v: from their vertices, or as the shares of the second and third corner; of a
+  // mesh that is turned inside out they are the third and second.
+  enum class Mapping : std::uint8_t { vertices, corners, swapped_corners } mapping = Mapping::vertices;
 };
 
 // `normal`: for shading, interpolated; zero: the triangle's own, (p1 - p0) x (p2 - p0).
@@ -70,7 +72,8 @@ struct Camera {
 // What weighs a camera ray by its place about a pixel's centre.
 struct Filter {
   enum class Kind { box, tent, gaussian } kind = Kind::box;
-  float width = .5f;  // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
+  float width = .5f;   // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
+  bool beyond = true;  // the film's border; otherwise nothing from there counts, as in Mitsuba by default
 };
 
 // How light is to be computed.
