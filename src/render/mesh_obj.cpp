@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "reflectree/error.hpp"
 #include "reflectree/render/mesh_files.hpp"
@@ -47,8 +48,11 @@ Mesh read_obj(ByteView bytes, const std::string& path, bool face_normals, bool f
   std::map<std::array<int, 3>, std::uint32_t> known;  // corners that share all three share a vertex
   for (const auto& shape : reader.GetShapes()) {
     const auto& corners = shape.mesh.indices;
+    const auto& counts = shape.mesh.num_face_vertices;  // bytes
+    if (std::accumulate(counts.begin(), counts.end(), std::size_t(0)) != corners.size())
+      throw Error("a face of more than 255 corners", path, "export it as triangles");
     std::size_t first = 0;
-    for (const std::size_t count : shape.mesh.num_face_vertices) {
+    for (const std::size_t count : counts) {
       for (std::size_t i = first + 2; i < first + count; ++i) {
         std::array<std::uint32_t, 3> triangle{};
         const std::size_t of[3] = {first, i - 1, i};

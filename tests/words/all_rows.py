@@ -12,6 +12,10 @@ ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS]
 STORED = pathlib.Path(__file__).resolve().parent / "mitsuba.json"
 
 
+BY_WORD = {row.word: row for row in ROWS}
+assert len(BY_WORD) == len(ROWS), "two rows of the same word"
+
+
 def key(row):
     """A row's numbers are of its scene and files: a changed scene has none."""
     h = hashlib.sha256(row.scene.encode())
@@ -22,6 +26,14 @@ def key(row):
 
 def load():
     return json.loads(STORED.read_text()) if STORED.exists() else {}
+
+
+def expected(row, stored):
+    """What ours should show, if numbers tell it."""
+    if row.error or (row.why and not row.like):
+        return None
+    entry = stored.get(key(BY_WORD[row.like] if row.like else row), {})
+    return entry.get("numbers", [])
 
 
 def store(found):

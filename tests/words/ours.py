@@ -3,7 +3,7 @@
 import pathlib
 import subprocess
 
-from judge import quadrants
+from judge import numbers_of
 from pixels import read_exr
 
 
@@ -24,4 +24,4 @@ def render(program, row, folder, seed=1):
     if done.returncode != 0:
         return None, done.stderr.decode()
     found = read_exr((folder / "out.exr").read_bytes())
-    return quadrants([found[c] for c in "RGB"], [found["stderr." + c] for c in "RGB"]), None
+    return numbers_of([found[c] for c in "RGB"], [found["stderr." + c] for c in "RGB"]), None

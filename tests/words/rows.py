@@ -16,6 +16,7 @@ class Row:
     files: dict = dataclasses.field(default_factory=dict)
     error: str = ""       # a part of the sentence with which ours refuses it; its line is then checked as well
     why: str = ""         # where ours differs on purpose
+    like: str = ""        # then: the row whose numbers ours has
     slack: float = .004   # relative, beside the noise
     spp: int = 256
 

@@ -228,10 +228,10 @@ def filtered(word, rfilter, error="", film="", **more):
     return Row("sensor", word, scene(body, rfilter=rfilter, film=film), error=error, spp=4096, **more)
 
 
-def paths(word, integrator, error="", body=None, why="", **more):
+def paths(word, integrator, error="", body=None, why="", like="", **more):
     body = body or ('<shape type="sphere"><float name="radius" value="5"/><boolean name="flip_normals" value="true"/>\n'
                     + diffuse(number("reflectance", "0.8", "rgb")) + '<emitter type="area"><rgb name="radiance" value="0.2"/></emitter></shape>')
-    return Row("integrators", word, scene(body, 4, 4, integrator=integrator), error=error, why=why, spp=1024, **more)
+    return Row("integrators", word, scene(body, 4, 4, integrator=integrator), error=error, why=why, like=like, spp=1024, **more)
 
 
 def integrator(kind, inside=""):
@@ -246,7 +246,8 @@ ROWS += [
         ("mitchell", '\n<rfilter type="mitchell"/>', "no rfilter"))],
     filtered("sample_border true", "gaussian", film='<boolean name="sample_border" value="true"/>'),
     *[paths(w, x, error=e, **m) for w, x, e, m in (
-        ("none given", "", "", {"why": "Mitsuba's renderer asks for one; path without a last bounce is meant"}), ("path: default depth", integrator("path"), "", {}),
+        ("none given", "", "", {"why": "Mitsuba's renderer asks for one; path without a last bounce is meant",
+                                   "like": "path: default depth"}), ("path: default depth", integrator("path"), "", {}),
         *[(f"path: max_depth {d}", integrator("path", number("max_depth", d, "integer")), "", {}) for d in (0, 1, 2, 5, -1)],
         ("path: rr_depth 1", integrator("path", number("rr_depth", 1, "integer")), "", {}),
         ("path: rr_depth 0", integrator("path", number("rr_depth", 0, "integer")), "rr_depth is not positive", {}),

@@ -21,10 +21,13 @@ def share(rows, by=255):
     return [[tuple(v / by for v in p) for p in r] for r in rows]
 
 
-def both(word, file, data, more="", sky_why="", **others):
+def both(word, file, data, more="", sky_why="", like="", **others):
     """As a texture and as a sky."""
-    return [Row("pixels", f"texture: {word}", *picture(file, data, more), **others),
-            Row("pixels", f"sky: {word}", *sky(file, data), **{"why": sky_why, **others})]
+    of = {kind: f"{kind}: {like}" if like else "" for kind in ("texture", "sky")}
+    in_sky = {"why": sky_why, **others}
+    return [Row("pixels", f"texture: {word}", *picture(file, data, more), like=of["texture"] if others.get("why") else "",
+                **others),
+            Row("pixels", f"sky: {word}", *sky(file, data), like=of["sky"] if in_sky["why"] else "", **in_sky)]
 
 
 LINEAR = share(SPOTS)
@@ -58,20 +61,22 @@ ROWS = [
     *both("OpenEXR, X, Y, Z", "a.exr", exr(LINEAR, "XYZ")),
     *both("OpenEXR, R half, G and B float", "a.exr", exr(LINEAR, "RGB", ["half", "float", "float"])),
     *both("OpenEXR, layer diffuse alone", "a.exr", exr(LINEAR, ["diffuse.R", "diffuse.G", "diffuse.B"]),
-          sky_why="Mitsuba takes such textures and refuses such skies"),
+          sky_why="Mitsuba takes such textures and refuses such skies", like="OpenEXR, float, RGB"),
     *both("OpenEXR, small letters r, g, b", "a.exr", exr(LINEAR, "rgb"),
-          sky_why="Mitsuba takes such textures and refuses such skies"),
+          sky_why="Mitsuba takes such textures and refuses such skies", like="OpenEXR, float, RGB"),
     *both("OpenEXR, ACES chromaticities", "a.exr", exr(LINEAR, "RGB", chromaticities=(
         .7347, .2653, 0, 1, .0001, -.077, .32168, .33767))),
     *both("OpenEXR, data window off 0", "a.exr", exr(LINEAR, "RGB", window=(3, -5)),
-          why="Mitsuba reads beyond its memory; the window's own pixels are meant"),
+          why="Mitsuba reads beyond its memory; the window's own pixels are meant",
+          like="OpenEXR, float, RGB"),
     *both("OpenEXR, uint, RGB", "a.exr", exr([[tuple(v << 23 for v in p) for p in r] for r in SPOTS], "RGB", "uint"),
           error="whole numbers"),
     *both("OpenEXR, R and B without G", "a.exr", exr([[(p[0], p[2]) for p in r] for r in LINEAR], "RB"),
           error="no channel G"),
     *both("OpenEXR, R, G, B and a layer", "a.exr", exr([[p + p for p in r] for r in LINEAR],
                                                       ["R", "G", "B", "z.R", "z.G", "z.B"]),
-          why="Mitsuba refuses several layers; the one without a name is meant"),
+          why="Mitsuba refuses several layers; the one without a name is meant",
+          like="OpenEXR, float, RGB"),
     *both("OpenEXR, two layers", "a.exr", exr([[p + p for p in r] for r in LINEAR],
                                               ["a.R", "a.G", "a.B", "z.R", "z.G", "z.B"]), error="several layers"),
     *both("OpenEXR, a NaN", "a.exr", exr([[(float("nan"), .5, .5)] * 4] * 3, "RGB"), error="not finite"),
@@ -81,7 +86,7 @@ ROWS = [
           error="RGBE"),
     *[Row("pixels", f"texture: wrap_mode {w}, {f}", *picture(
         "a.png", png(SPOTS), f'<string name="wrap_mode" value="{w}"/><string name="filter_type" value="{f}"/>'
-        '<transform name="to_uv"><scale x="2.6" y="1.7"/></transform>')) for w in ("repeat", "mirror", "clamp")
+        '<transform name="to_uv"><scale x="1.7" y="1.4"/><translate x="-0.35" y="-0.2"/></transform>')) for w in ("repeat", "mirror", "clamp")
       for f in ("nearest", "bilinear")],
     Row("pixels", "texture: to_uv, turned and shifted", *picture(
         "a.png", png(SPOTS), '<transform name="to_uv"><translate x="0.3" y="0.1"/><rotate z="1" angle="30"/>'

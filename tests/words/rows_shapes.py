@@ -97,7 +97,7 @@ ROWS = [
     mesh("obj: face_normals", "obj", obj(), word("face_normals")),
     mesh("obj: a face of four corners", "obj", obj(faces=[(1, 2, 3, 4)])),
     mesh("obj: corners counted from the end", "obj", obj(uv=False).replace(b"f 1 2 3", b"f -4 -3 -2"),
-         more={"why": "Mitsuba refuses numbers below 0; the format has them"}),
+         more={"why": "Mitsuba refuses numbers below 0; the format has them", "like": "obj: without texture coordinates"}),
     mesh("obj: some corners without texture coordinates", "obj", obj().replace(b"f 1/1 3/3 4/4", b"f 1 3 4"),
          more={"why": "Mitsuba leaves theirs to chance; ours are 0"}),
     mesh("obj: some corners without normals", "obj", obj(normals=True).replace(b"f 1/1/1 3/3/3 4/4/4",
@@ -121,7 +121,7 @@ ROWS = [
     mesh("ply: normals of its own, face_normals", "ply", ply(normals=True), word("face_normals")),
     mesh("ply: binary", "ply", ply(normals=True, binary=True)),
     mesh("ply: a face of four corners", "ply", ply(faces=[(0, 1, 2, 3)]),
-         more={"why": "Mitsuba takes triangles alone"}),
+         more={"why": "Mitsuba takes triangles alone", "like": "ply: texture coordinates u, v"}),
     *[mesh(f"{k}: {w}, which side shines", k, d, words, inside=LAMP, lights="", transform=t)
       for k, d in (("obj", obj()), ("ply", ply())) for w, words, t in (
           ("as it is", "", TURN + '<translate z="3"/>'), ("flip_normals", FLIPPED, TURN + '<translate z="3"/>'),
@@ -145,9 +145,12 @@ ROWS = [
     shape("a file that is none", "obj", '<string name="filename" value="m.obj"/>\n',
           files={"m.obj": b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n"},
           more={"error": "m.obj"}),
+    shape("transform: rotate about the same axis of unit length", "cube",
+          transform='<rotate x="0.801783726" y="0.267261242" z="-0.534522484" angle="70"/><translate z="3"/>'),
     shape("transform: rotate about an axis of no unit length", "cube",
           transform='<rotate x="3" y="1" z="-2" angle="70"/><translate z="3"/>',
-          more={"why": "Mitsuba scales and shears by such an axis, ours turns about it"}),
+          more={"why": "Mitsuba scales and shears by such an axis, ours turns about it",
+                "like": "transform: rotate about the same axis of unit length"}),
     *[shape(f"transform: {w}", "cube", transform=t) for w, t in (
         ("order", '<translate x="0.4"/><rotate z="1" angle="50"/><scale x="0.5"/><translate z="3"/>'),
         ("scale by one number", '<scale value="0.6"/>' + TURN + '<translate value="0.3, 0, 3"/>'),
