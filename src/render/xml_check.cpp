@@ -54,7 +54,7 @@ bool has(const std::vector<std::string_view>& all, std::string_view word) {
 
 // Every $name in an attribute is replaced by what it stands for, \$ by $. pugixml keeps the places of
 // elements.
-void XmlReader::replace_names(Node n, int depth) const {
+void XmlReader::replace_names(Node n, int depth) {
   if (depth > 64) fail(n, "elements are nested deeper than 64", "close those that have ended");
   for (pugi::xml_attribute a : n.attributes()) {
     std::string value = a.value();
@@ -70,6 +70,7 @@ void XmlReader::replace_names(Node n, int depth) const {
       const std::string name = value.substr(at + 1, end - at - 1);
       const auto known = defines_.find(name);
       if (known == defines_.end()) fail(n, "nothing defines $" + name, "give -D " + name + "=VALUE");
+      used_.insert(name);
       value.replace(at, end - at, known->second);
       at += known->second.size();
     }

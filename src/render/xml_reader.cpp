@@ -22,9 +22,14 @@ XmlReader::XmlReader(std::string_view xml, const std::string& path, const SceneO
   if (!parsed) throw Error(parsed.description(), place(parsed.offset), "mend the XML");
   root_ = document_.child("scene");
   if (!root_) throw Error("no <scene>", path_, "name a Mitsuba 3 scene");
-  for (const Node n : root_.children("default"))
+  for (const Node n : root_.children("default")) {
     defines_.try_emplace(n.attribute("name").value(), n.attribute("value").value());
+    used_.insert(n.attribute("name").value());
+  }
   replace_names(root_, 0);
+  for (const auto& [name, value] : options.defines) {
+    if (!used_.count(name)) throw Error("the scene does not say $" + name, path, "leave -D " + name + " out");
+  }
   check(root_);
 }
 

@@ -5,6 +5,7 @@
 
 #include <initializer_list>
 #include <pugixml.hpp>
+#include <set>
 
 #include "reflectree/error.hpp"
 #include "scene_colour.hpp"
@@ -72,7 +73,7 @@ class XmlReader {
  private:
   std::string place(std::ptrdiff_t offset) const;
   [[noreturn]] void rethrow(Node n, const Error& e) const;
-  void replace_names(Node n, int depth) const;
+  void replace_names(Node n, int depth);
   void check(Node n) const;  // attributes, names and ids of all that is in it
   void check_attributes(Node n) const;
   void need(Node property, Names tags, const std::string& what) const;
@@ -84,6 +85,7 @@ class XmlReader {
   const std::string& path_;
   const SceneOptions& options_;
   std::map<std::string, std::string> defines_;
+  std::set<std::string> used_;               // names of `defines_`
   mutable std::map<std::string, Node> ids_;  // elements by their id
   pugi::xml_document document_;
   Node root_;

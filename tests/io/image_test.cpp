@@ -51,6 +51,48 @@ TEST(Image, PngReturnsColoursAndRefusesDamage) {
   std::filesystem::remove(path);
 }
 
+// Pixel 0 of a picture of one pixel whose channels hold 1, 2, 3, ...
+std::vector<float> shown(const std::vector<std::string>& channels) {
+  Image image = make_image(1, 1, channels);
+  for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = float(i + 1);
+  return colours_of(image, "a.exr").values;
+}
+
+std::string refused(const std::vector<std::string>& channels) {
+  try {
+    shown(channels);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(Image, ColoursAreFoundByName) {
+  using Values = std::vector<float>;
+  EXPECT_EQ(shown({"B", "G", "R"}), (Values{3, 2, 1}));
+  EXPECT_EQ(shown({"A", "B", "G", "R"}), (Values{4, 3, 2}));
+  EXPECT_EQ(shown({"b", "g", "r"}), (Values{3, 2, 1}));
+  EXPECT_EQ(shown({"A", "Y"}), (Values{2}));
+  EXPECT_EQ(shown({"Y", "Z"}), (Values{1})) << "luminance and depth";
+  EXPECT_EQ(shown({"B", "G", "R", "Z", "stderr.B", "stderr.G", "stderr.R"}), (Values{3, 2, 1}));
+  EXPECT_EQ(shown({"diffuse.B", "diffuse.G", "diffuse.R"}), (Values{3, 2, 1}));
+  EXPECT_NE(refused({"B", "R"}).find("no channel G"), std::string::npos);
+  EXPECT_NE(refused({"R"}).find("no channel G"), std::string::npos);
+  EXPECT_NE(refused({"A"}).find("no channels R, G and B"), std::string::npos);
+  EXPECT_NE(refused({"a.B", "a.G", "a.R", "b.Y"}).find("several layers"), std::string::npos);
+  EXPECT_NE(refused({"BY", "RY", "Y"}).find("chroma"), std::string::npos);
+}
+
+TEST(Image, EncodedValuesBecomeLightUnlessTheyAreRaw) {
+  Image image = make_image(1, 1, {"R", "G", "B"});
+  image.values = {128 / 255.f, 0, 1}, image.encoded = true;
+  EXPECT_NEAR(colours_of(image, "a.png").values[0], .2159, 1e-4);
+  EXPECT_FALSE(colours_of(image, "a.png").encoded);
+  EXPECT_EQ(colours_of(image, "a.png", true).values, image.values);
+  image.values[1] = NAN;
+  EXPECT_THROW(colours_of(image, "a.png"), Error);
+}
+
 Bytes hdr(const std::string& size, std::initializer_list<int> pixels) {
   const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n";
   Bytes bytes(head.begin(), head.end());

@@ -115,7 +115,8 @@ ROWS = [
     # Materials.
     ball("diffuse", bsdf("diffuse")),
     ball("conductor: default", bsdf("conductor")),
-    ball("conductor: material Cu", bsdf("conductor", number("material", "Cu", "string"))),
+    *[ball(f"conductor: material {m}", bsdf("conductor", number("material", m, "string")))
+      for m in ("Cu", "Ag", "Al", "Au", "a-C", "AlSb", "TiO2", "VN", "SnTe")],
     ball("conductor: eta and k", bsdf("conductor", number("eta", "0.2, 0.9, 1.1", "rgb") + number("k", "3.9, 2.4, 2.2", "rgb"))),
     ball("conductor: eta alone", bsdf("conductor", number("eta", "0.2, 0.9, 1.1", "rgb"))),
     ball("conductor: k alone", bsdf("conductor", number("k", "3.9, 2.4, 2.2", "rgb"))),
