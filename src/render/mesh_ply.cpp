@@ -97,14 +97,15 @@ class Numbers {
   const std::string& path_;
 };
 
+bool has(const Element& e, const std::string& name) {
+  return std::any_of(e.properties.begin(), e.properties.end(),
+                     [&](const Property& p) { return p.name == name; });
+}
+
 // The names of an element's texture coordinates, as Mitsuba chooses them; empty: it has none.
 std::pair<std::string, std::string> uv_names(const Element& e) {
-  const auto has = [&](const std::string& name) {
-    return std::any_of(e.properties.begin(), e.properties.end(),
-                       [&](const Property& p) { return p.name == name; });
-  };
   for (const auto& [u, v] : {std::pair{"texture_u", "texture_v"}, {"s", "t"}, {"u", "v"}}) {
-    if (has(u) && has(v)) return {u, v};
+    if (has(e, u) && has(e, v)) return {u, v};
   }
   return {};
 }
@@ -140,7 +141,12 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool f
   for (const Element& e : header.elements) {
     if (e.properties.empty()) continue;
     const auto uv = uv_names(e);
-    if (e.name == "vertex") mesh.has_uv = !uv.first.empty();
+    if (e.name == "vertex") {
+      mesh.has_uv = !uv.first.empty();
+      normals = has(e, "nx") && has(e, "ny") && has(e, "nz");
+    }
+    if (e.name == "face" && has(e, "texcoord"))
+      throw Error("texture coordinates of faces are not read", path, "export those of vertices");
     for (std::uint64_t i = 0; i < e.count; ++i) {
       Vertex vertex;
       for (const Property& p : e.properties) {
@@ -148,7 +154,6 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool f
           const double v = numbers.next(p.type);
           float* at = e.name == "vertex" ? field(vertex, p.name, uv) : nullptr;
           if (at) *at = float(v);
-          normals = normals || (e.name == "vertex" && p.name == "nx");
           continue;
         }
         const double count = numbers.next(p.count);
@@ -161,7 +166,7 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool f
       if (e.name == "vertex") mesh.vertices.push_back(vertex);
     }
   }
-  if (face_normals) {
+  if (face_normals || !normals) {
     for (Vertex& v : mesh.vertices) v.normal = {};
   }
   mesh.smooth = !face_normals && !normals;

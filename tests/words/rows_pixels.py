@@ -82,6 +82,7 @@ ROWS = [
     *both("OpenEXR, a NaN", "a.exr", exr([[(float("nan"), .5, .5)] * 4] * 3, "RGB"), error="not finite"),
     *both("Radiance", "a.hdr", hdr([[(*p, 129) for p in r] for r in SPOTS])),
     *both("Radiance with EXPOSURE", "a.hdr", hdr([[(*p, 129) for p in r] for r in SPOTS], ["EXPOSURE=4.0"])),
+    *both("Radiance, flat pixels of 2, 2", "a.hdr", hdr([[(2, 2, 0, 135), (2, 2, 9, 133)] * 2, [(2, 2, 0, 135)] * 4])),
     *both("Radiance, XYZE", "a.hdr", hdr([[(*p, 129) for p in r] for r in SPOTS], form="32-bit_rle_xyze"),
           error="RGBE"),
     *[Row("pixels", f"texture: wrap_mode {w}, {f}", *picture(

@@ -119,6 +119,10 @@ ROWS = [
     mesh("ply: flip_tex_coords true", "ply", ply(), word("flip_tex_coords")),
     mesh("ply: normals of its own", "ply", ply(normals=True)),
     mesh("ply: normals of its own, face_normals", "ply", ply(normals=True), word("face_normals")),
+    mesh("ply: nx alone", "ply", ply(normals=True).replace(b"float ny", b"float a").replace(b"float nz", b"float b")),
+    mesh("ply: texture coordinates of faces", "ply", ply(()).replace(
+        b"end_header", b"property list uchar float texcoord\nend_header").replace(b"3 0 1 2\n", b"3 0 1 2 6 0 0 1 0 1 1\n").replace(
+            b"3 0 2 3\n", b"3 0 2 3 6 0 0 1 1 0 1\n"), more={"error": "texture coordinates of faces"}),
     mesh("ply: binary", "ply", ply(normals=True, binary=True)),
     mesh("ply: a face of four corners", "ply", ply(faces=[(0, 1, 2, 3)]),
          more={"why": "Mitsuba takes triangles alone", "like": "ply: texture coordinates u, v"}),
