@@ -15,7 +15,7 @@ struct Options {
   render::FlipOptions eye;
 };
 
-// Channels of other names, such as stderr.R, stay; what is 8-bit becomes linear light.
+// Channels of other names, such as stderr.R, stay; what is in sRGB becomes linear light.
 Image linear(const std::string& path) {
   Image image = read_image(path);
   return image.encoded || image.find("R") < 0 ? rgb_of(image, path) : image;

@@ -77,7 +77,8 @@ void XmlReader::replace_names(Node n, int depth) {
     a.set_value(value.c_str());
   }
   for (const Node c : n.children()) {
-    if (c.type() == pugi::node_element) replace_names(c, depth + 1);
+    const bool is_default = c.name() == std::string_view("default");  // is done already
+    if (c.type() == pugi::node_element && !is_default) replace_names(c, depth + 1);
   }
 }
 

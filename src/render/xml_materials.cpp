@@ -140,7 +140,7 @@ std::vector<ScatteringPtr> MaterialReader::inside(Node n, int depth) {
     const Node meant = xml_.resolve(c);
     if (std::string_view(meant.name()) == "bsdf") {
       found.push_back(read(meant, depth + 1));
-    } else if (meant != c && !*c.attribute("name").value()) {
+    } else if (meant != c && c.attribute("name").value() != std::string_view("weight")) {
       xml_.fail(c, "refers to a <" + std::string(meant.name()) + ">", "refer to a bsdf");
     }
   }

@@ -23,6 +23,7 @@ XmlReader::XmlReader(std::string_view xml, const std::string& path, const SceneO
   root_ = document_.child("scene");
   if (!root_) throw Error("no <scene>", path_, "name a Mitsuba 3 scene");
   for (const Node n : root_.children("default")) {
+    replace_names(n, 0);  // by those before it
     defines_.try_emplace(n.attribute("name").value(), n.attribute("value").value());
     used_.insert(n.attribute("name").value());
   }

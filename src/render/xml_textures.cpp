@@ -68,7 +68,7 @@ Texture MaterialReader::number(Node n, const char* name, double otherwise) {
   const Node c = XmlReader::named(n, name);
   const std::string_view tag = c.name();
   Texture t;
-  if (!c || tag == "float" || tag == "integer") {
+  if (tag != "texture" && tag != "ref" && tag != "rgb" && tag != "spectrum") {
     t.colour = to_rgb(float(xml_.property(n, name, otherwise)));
     return t;
   }

@@ -136,8 +136,7 @@ ROWS = [
         ("distribution ggx", number("distribution", "ggx", "string") + number("alpha", "0.3"), "", {}, {}),
         ("distribution GGX", number("distribution", "GGX", "string") + number("alpha", "0.3"), "", {}, {}),
         ("sample_visible false", number("sample_visible", "false", "boolean") + number("alpha", "0.3"), "", {}, {}),
-        ("alpha as a string", number("alpha", "0.4", "string"), "'alpha' is a", {}, {}) if k == "roughplastic" else
-        ("alpha as a string", number("alpha", "0.4", "string"), "'alpha' is a", {}, {}),
+        ("alpha as a string", number("alpha", "0.4", "string"), "'alpha' is a number", {}, {}),
         ("alpha of 0", number("alpha", "0"), "not positive", {}, {}),
         ("distribution phong", number("distribution", "phong", "string"), "no distribution", {}, {}))],
     ball("roughconductor: alpha as rgb", bsdf("roughconductor", number("alpha", "0.1, 0.5, 0.6", "rgb"))),
@@ -178,6 +177,8 @@ ROWS = [
     plain("twosided of two, from behind", PANEL.replace("<rotate y=\"1\" angle=\"180\"/>", "").format(bsdf(
         "twosided", diffuse(number("reflectance", "0.9", "rgb")) + diffuse(number("reflectance", "0.1, 0.2, 0.3", "rgb")))) + HEADLIGHT),
     ball("twosided of glass", bsdf("twosided", bsdf("dielectric")), error="two sides already"),
+    ball("twosided with a texture by ref", bsdf("twosided", diffuse("") + '\n<ref name="alpha" id="t"/>'),
+         WHITE_SKY + bitmap("a.png", RAW, "x").replace('name="x"', 'id="t"'), {"a.png": GREY60}, error="refers to a <texture>"),
     ball("twosided with an unknown word", bsdf("twosided", diffuse("") + "\n" + number("colour", "1")), error="is not known"),
     *[plain(f"blendbsdf: weight {w}", PANEL.format(bsdf("blendbsdf", x + diffuse(number("reflectance", "0.9, 0.1, 0.2", "rgb"))
                                                         + diffuse(number("reflectance", "0.1, 0.8, 0.3", "rgb")))) + HEADLIGHT, f, e)
@@ -261,6 +262,7 @@ ROWS += [
         ("two integrators", integrator("path") + integrator("direct"), "a second <integrator>", {}),
         ("volpath", integrator("volpath"), "no integrator", {}),
         ("$name in a type", '<default name="how" value="path"/>' + integrator("$how"), "", {}),
+        ("$name by another", '<default name="kind" value="path"/><default name="how" value="$kind"/>' + integrator("$how"), "", {}),
         ("$name that nothing defines", integrator("$how"), "nothing defines $how", {}))],
 ]
 

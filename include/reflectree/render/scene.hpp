@@ -64,8 +64,8 @@ struct DirectionalLight {
 struct Camera {
   Point origin, left, up, forward;  // an orthonormal basis
   float tan_x = 1, tan_y = 1;       // half the picture's width and height at distance 1
-  float shift_x = 0,
-        shift_y = 0;  // what the picture shows lies so much to the right and below, in sizes of it
+  // What the picture shows lies so much to the right and below, in sizes of it.
+  float shift_x = 0, shift_y = 0;
   float near = 0, far = std::numeric_limits<float>::infinity();  // along `forward`; the rest is not seen
 };
 
