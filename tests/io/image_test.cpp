@@ -38,6 +38,23 @@ TEST(Image, ExrReturnsEveryBitLayerAndWord) {
   std::filesystem::remove(path);
 }
 
+TEST(Image, ExrHeadersThatLieAreRefusedBeforeMemoryIsAskedFor) {
+  const std::string path = scratch("lies.exr");
+  write_exr(path, noise(4, 4, {"B", "G", "R"}));
+  const Bytes good = read_file(path, 1 << 20);
+  const std::string text(good.begin(), good.end());
+  const auto with = [&](const std::string& name, std::size_t behind, std::uint32_t v) {
+    Bytes bad = good;
+    const std::size_t at = text.find(name) + name.size() + 1 + behind;
+    for (std::size_t i = 0; i < 4; ++i) bad[at + i] = std::uint8_t(v >> (8 * i));
+    return bad;
+  };
+  // Name, 0, "box2i", 0, size, then the box.
+  EXPECT_THROW(read_exr(with("dataWindow", 6 + 4 + 8, 1000000), path), Error) << "a million columns";
+  EXPECT_THROW(read_exr(with("dataWindow", 6, 0x7fffffff), path), Error) << "an attribute of 2 GB";
+  EXPECT_NO_THROW(read_exr(with("dataWindow", 6 + 4 + 8, 3), path)) << "as it was";
+}
+
 TEST(Image, PngReturnsColoursAndRefusesDamage) {
   Image image = make_image(3, 1, {"R", "G", "B"});
   image.values = {0, .5f, 1, 2, -1, .25f, NAN, 0, 0};

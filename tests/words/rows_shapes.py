@@ -3,21 +3,22 @@
 import struct
 
 from pixels import png
-from rows import HEADLIGHT, PI, WHITE_SKY, Row, bitmap, diffuse, scene
+from rows import FACING, HEADLIGHT, Row, bitmap, diffuse, scene
 
 SPOTS = [[(230, 40, 10), (30, 160, 90), (60, 60, 200), (250, 250, 240)],
          [(10, 20, 30), (120, 90, 40), (200, 10, 120), (77, 128, 33)],
          [(250, 180, 20), (5, 66, 160), (140, 140, 140), (20, 230, 60)],
          [(90, 10, 200), (245, 120, 130), (15, 190, 190), (170, 70, 5)]]
 PICTURE = png(SPOTS)
-SKIN = f'<bsdf type="twosided">{diffuse(bitmap("a.png", "<string name=" + chr(34) + "filter_type" + chr(34) + " value=" + chr(34) + "nearest" + chr(34) + "/>"))}</bsdf>'
+NEAREST = '<string name="filter_type" value="nearest"/>'
+SKIN = f'<bsdf type="twosided">{diffuse(bitmap("a.png", NEAREST))}</bsdf>'
 TURN = '<rotate x="0.285714286" y="0.428571429" z="0.857142857" angle="40"/>'  # of unit length, as Mitsuba needs it
 
 
-def shown(kind, words="", transform=TURN + '<translate z="3"/>', inside=SKIN, files=None, lights=HEADLIGHT, near=""):
+def shown(kind, words="", transform=TURN + '<translate z="3"/>', inside=SKIN, files=None, lights=HEADLIGHT):
     """A textured shape three units away, lit from the camera."""
     body = f'<shape type="{kind}">\n{words}<transform name="to_world">{transform}</transform>\n{inside}</shape>\n{lights}'
-    return scene(body, sensor=f'<float name="fov" value="50"/>{near}'), {"a.png": PICTURE, **(files or {})}
+    return scene(body, sensor='<float name="fov" value="50"/>'), {"a.png": PICTURE, **(files or {})}
 
 
 def shape(word, *args, more=None, **others):
@@ -137,6 +138,16 @@ ROWS = [
       for k, d in (("obj", obj(normals=True)), ("ply", ply(normals=True))) for w, words, t in (
           ("as it is", "", TURN + '<translate z="3"/>'), ("flip_normals", FLIPPED, TURN + '<translate z="3"/>'),
           ("mirrored", "", MIRROR))],
+    Row("shapes", "ply: a lamp with leaning normals", scene(
+        f'<shape type="rectangle">{FACING}</shape><shape type="ply"><string name="filename" value="m.ply"/>'
+        f'<transform name="to_world"><rotate y="1" angle="180"/><translate z="-0.5"/></transform>{LAMP}</shape>'),
+        {"m.ply": ply(normals=True)}, spp=4096,
+        why="Mitsuba's density of a sampled point takes the leaning normal's cosine, and its picture hangs on how lamps "
+            "are sampled; ours takes the triangle's"),
+    Row("shapes", "ply: a lamp without leaning normals", scene(
+        f'<shape type="rectangle">{FACING}</shape><shape type="ply"><string name="filename" value="m.ply"/>{word("face_normals")}{FLIPPED}'
+        f'<transform name="to_world"><rotate y="1" angle="180"/><translate z="-0.5"/></transform>{LAMP}</shape>'),
+        {"m.ply": ply(normals=True)}, spp=4096),
     Row("shapes", "no material: grey", scene(f'<shape type="sphere"><transform name="to_world"><translate z="3"/></transform></shape>{HEADLIGHT}')),
     Row("shapes", "no material, shines: black", scene(f'<shape type="sphere"><transform name="to_world"><translate z="3"/></transform>{LAMP}</shape>{HEADLIGHT}')),
     shape("two materials", "sphere", inside=SKIN + "\n" + diffuse(""), more={"error": "a second material"}),
