@@ -8,7 +8,8 @@ PNG_TYPES = {1: 0, 2: 4, 3: 2, 4: 6}  # by channels: grey, grey and alpha, colou
 
 
 def png(rows, bits=8, palette=None, transparent=None, gamma=None):
-    """`rows`: lists of tuples of whole numbers; with a palette, of its indices."""
+    """`rows`: lists of tuples of whole numbers; with a palette, of its indices. Stored, not deflated, so that every
+    zlib writes the same bytes."""
     width, height, channels = len(rows[0]), len(rows), len(rows[0][0])
 
     def chunk(kind, data):
@@ -32,7 +33,7 @@ def png(rows, bits=8, palette=None, transparent=None, gamma=None):
         out += chunk(b"PLTE", bytes(v for colour in palette for v in colour))
     if transparent:
         out += chunk(b"tRNS", transparent)
-    return out + chunk(b"IDAT", zlib.compress(b"".join(b"\0" + packed(r) for r in rows))) + chunk(b"IEND", b"")
+    return out + chunk(b"IDAT", zlib.compress(b"".join(b"\0" + packed(r) for r in rows), 0)) + chunk(b"IEND", b"")
 
 
 def hdr(rows, header=(), form="32-bit_rle_rgbe"):
