@@ -57,14 +57,12 @@ std::vector<std::string> files_of(const std::string& folder) {
 
 // Row 0 of the picture is the zenith; luminance by ITU-R BT.709.
 Environment read_environment(const std::string& path) {
-  const Image image = read_image(path);
-  const int r = image.find("R"), g = image.find("G"), b = image.find("B");
-  if (r < 0 || g < 0 || b < 0) throw Error("no channels R, G, B", path, "give a picture in colour");
+  const Image image = rgb_of(read_image(path), path);
   LatLong map{image.width, image.height, {}};
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const float* pixel = image.values.data() + image.index(x, y);
-      map.radiance.push_back(0.2126f * pixel[r] + 0.7152f * pixel[g] + 0.0722f * pixel[b]);
+      map.radiance.push_back(0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2]);
     }
   }
   return make_environment(fs::path(path).stem().string(), std::move(map));

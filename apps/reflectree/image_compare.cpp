@@ -15,19 +15,17 @@ struct Options {
   render::FlipOptions eye;
 };
 
-// 8-bit pictures are encoded.
-Image linear(Image image, const std::string& path) {
-  if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
-    for (float& v : image.values) v = from_srgb(v);
-  }
-  return image;
+// Channels of other names, such as stderr.R, stay; what is in sRGB becomes linear light.
+Image linear(const std::string& path) {
+  Image image = read_image(path);
+  return image.encoded || image.find("R") < 0 ? rgb_of(image, path) : image;
 }
 
 int run_compare(const Context& context, const Options& o) {
-  const Image a = read_image(o.a), b = read_image(o.b);
+  const Image a = linear(o.a), b = linear(o.b);
   const render::ImageDifference d = render::compare(a, b, o.how);
   if (!o.map.empty()) write_png(o.map, render::difference_map(a, b, o.how.block, o.scale));
-  const Image seen = render::flip(linear(b, o.b), linear(a, o.a), o.eye);
+  const Image seen = render::flip(b, a, o.eye);
   if (!o.flip.empty()) write_png(o.flip, render::heat(seen));
   Json json;
   json["flip"] = render::mean_of(seen);

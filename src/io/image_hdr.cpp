@@ -37,7 +37,7 @@ void read_scanline(ByteReader& in, std::size_t width, std::vector<std::uint8_t>&
   };
   std::uint8_t head[4];
   take4(head);
-  const bool coded = head[0] == 2 && head[1] == 2 && head[2] < 128;
+  const bool coded = width >= 8 && width < 32768 && head[0] == 2 && head[1] == 2 && head[2] < 128;
   if (!coded) {
     for (std::size_t x = 0; x < width; ++x) {
       if (x > 0) take4(head);

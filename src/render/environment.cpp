@@ -40,15 +40,18 @@ constexpr std::size_t block = 64;  // of look-ups whose waits for memory overlap
 }  // namespace
 
 Environment::Environment(const Image& p, Frame<float> frame, float scale, const std::string& where) {
-  if (p.width < 2 || p.height < 3 || p.channels.size() < 3) {
-    throw Error("a sky needs red, green and blue and at least 2 x 3 pixels", where, "use another picture");
+  if (p.width < 1 || p.height < 1 || p.channels.size() < 3) {
+    throw Error("a sky needs red, green and blue", where, "use another picture");
   }
   if (p.width > 65535 || p.height > 65535)
     throw Error("the sky is too large", where, "use a smaller picture");
-  Sky sky{frame, p.width, p.height - 1, {}, {}, {}, {}, {}, {}};
-  for (int y = 0; y < p.height; ++y) {
-    for (int x = 0; x <= p.width; ++x) {
-      const float* v = p.values.data() + p.index(x % p.width, y);
+  // The last column and row go on where there are fewer than 2 x 3 pixels.
+  const int columns = std::max(2, p.width), last = std::max(2, p.height - 1);
+  Sky sky{frame, columns, last, {}, {}, {}, {}, {}, {}};
+  for (int y = 0; y <= last; ++y) {
+    for (int x = 0; x <= columns; ++x) {
+      const float* v =
+          p.values.data() + p.index(std::min(x % columns, p.width - 1), std::min(y, p.height - 1));
       sky.texels.push_back(scale * Rgb{v[0], v[1], v[2]});
     }
   }

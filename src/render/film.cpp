@@ -9,6 +9,7 @@
 
 #include "fnv.hpp"
 #include "reflectree/error.hpp"
+#include "visible_slope.hpp"
 
 namespace reflectree::render {
 
@@ -30,6 +31,37 @@ Vec2<float> offset(Filter filter, PathBits& u) {
   // Box & Muller; beyond four deviations, exp(-8) of the mass, the filter ends.
   const float r = filter.width * std::sqrt(-2 * std::log(1 - a * (1 - std::exp(-8.f))));
   return {r * std::cos(2 * pi * b), r * std::sin(2 * pi * b)};
+}
+
+// How far a filter reaches.
+float reach(Filter f) { return f.kind == Filter::Kind::gaussian ? 4 * f.width : f.width; }
+
+// One coordinate of an offset, from the filter's part between two ends, by its distribution and the inverse.
+float offset_between(Filter f, float low, float high, float u) {
+  low = std::max(low, -reach(f)) / f.width, high = std::min(high, reach(f)) / f.width;
+  const auto tent = [](float x) { return x < 0 ? (1 + x) * (1 + x) / 2 : 1 - (1 - x) * (1 - x) / 2; };
+  const float root_half = std::sqrt(.5f);
+  switch (f.kind) {
+    case Filter::Kind::box:
+      return f.width * std::lerp(low, high, u);
+    case Filter::Kind::tent: {
+      const float share = std::lerp(tent(low), tent(high), u);
+      return f.width * (share < .5f ? std::sqrt(2 * share) - 1 : 1 - std::sqrt(2 - 2 * share));
+    }
+    case Filter::Kind::gaussian:
+      break;
+  }
+  return f.width / root_half *
+         inverse_erf(std::lerp(std::erf(low * root_half), std::erf(high * root_half), u));
+}
+
+// Of pixel (x, y); nothing from beyond the film's border unless the filter takes it.
+Vec2<float> offset(const Scene& s, int x, int y, PathBits& u) {
+  const float r = reach(s.filter), left = float(x) + .5f, right = float(s.width) - left, top = float(y) + .5f,
+              bottom = float(s.height) - top;
+  if (s.filter.beyond || std::min({left, right, top, bottom}) >= r) return offset(s.filter, u);
+  const float a = to_unit_float(u()), b = to_unit_float(u());
+  return {offset_between(s.filter, -left, right, a), offset_between(s.filter, -top, bottom, b)};
 }
 
 // As many strata as there are to be samples, or fewer.
@@ -54,7 +86,8 @@ std::uint64_t identity_of(const Scene& s, const RenderOptions& o) {
 
 Direction through(const Scene& scene, float x, float y) {
   const Camera& c = scene.camera;
-  const float px = 1 - 2 * x / float(scene.width), py = 1 - 2 * y / float(scene.height);
+  const float px = 1 - 2 * (x / float(scene.width) + c.shift_x),
+              py = 1 - 2 * (y / float(scene.height) + c.shift_y);
   return normalize(c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up);
 }
 
@@ -78,7 +111,7 @@ void add_sample(const Integrator& integrator, const Scene& scene, const Tile& ti
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       PathBits u(film.points, film.seed, pixel(x, y), std::uint32_t(sample));
-      const Vec2<float> off = offset(scene.filter, u);
+      const Vec2<float> off = offset(scene, x, y, u);
       const Direction along = through(scene, float(x) + .5f + off.x, float(y) + .5f + off.y);
       rays.push_back({scene.camera.origin, along, u});
     }

@@ -9,7 +9,7 @@
 namespace reflectree::render {
 
 namespace {
-constexpr std::string_view magic = "reflectree film 3\n";
+constexpr std::string_view magic = "reflectree film 4\n";
 }
 
 void save_film(const std::string& path, const Film& film) {

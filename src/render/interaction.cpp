@@ -19,11 +19,12 @@ Interaction on_triangle(const Scene& scene, const Hit& hit) {
   const Direction smooth = w * a.normal + u * b.normal + v * c.normal;
   const float size2 = dot(smooth, smooth);
   const Direction shading = size2 > 1e-12f ? (1 / std::sqrt(size2)) * smooth : normalize(own);
-  return {w * a.at + u * b.at + v * c.at,
-          dot(own, shading) < 0 ? -own : own,
-          shading,
-          {w * a.uv.x + u * b.uv.x + v * c.uv.x, w * a.uv.y + u * b.uv.y + v * c.uv.y},
-          t.surface};
+  const auto mapping = scene.surfaces[t.surface].mapping;
+  const Uv uv = mapping == Surface::Mapping::vertices
+                    ? Uv{w * a.uv.x + u * b.uv.x + v * c.uv.x, w * a.uv.y + u * b.uv.y + v * c.uv.y}
+                : mapping == Surface::Mapping::corners ? Uv{u, v}
+                                                       : Uv{v, u};
+  return {w * a.at + u * b.at + v * c.at, dot(own, shading) < 0 ? -own : own, shading, uv, t.surface};
 }
 
 Interaction on_sphere(const Sphere& s, Point about) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY, ASCII or little-endian binary (Turk 1994): vertices with x y z, nx ny nz and s t or u v; faces as
-// lists.
+// PLY, ASCII or little-endian binary (Turk 1994): vertices with x y z, nx ny nz and u v, s t or
+// texture_u texture_v; faces as lists.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -98,10 +98,25 @@ class Numbers {
   const std::string& path_;
 };
 
-float* field(Vertex& v, const std::string& name) {
-  const std::pair<const char*, float*> all[] = {
-      {"x", &v.at.x},      {"y", &v.at.y}, {"z", &v.at.z}, {"nx", &v.normal.x}, {"ny", &v.normal.y},
-      {"nz", &v.normal.z}, {"s", &v.uv.x}, {"u", &v.uv.x}, {"t", &v.uv.y},      {"v", &v.uv.y}};
+bool has(const Element& e, const std::string& name) {
+  return std::any_of(e.properties.begin(), e.properties.end(),
+                     [&](const Property& p) { return p.name == name; });
+}
+
+// The names of an element's texture coordinates, as Mitsuba chooses them; empty: it has none.
+std::pair<std::string, std::string> uv_names(const Element& e) {
+  for (const auto& [u, v] : {std::pair{"texture_u", "texture_v"}, {"s", "t"}, {"u", "v"}}) {
+    if (has(e, u) && has(e, v)) return {u, v};
+  }
+  return {};
+}
+
+float* field(Vertex& v, const std::string& name, const std::pair<std::string, std::string>& uv) {
+  if (name == uv.first) return &v.uv.x;
+  if (name == uv.second) return &v.uv.y;
+  const std::pair<const char*, float*> all[] = {{"x", &v.at.x},      {"y", &v.at.y},
+                                                {"z", &v.at.z},      {"nx", &v.normal.x},
+                                                {"ny", &v.normal.y}, {"nz", &v.normal.z}};
   const auto* found = std::find_if(std::begin(all), std::end(all), [&](auto& f) { return name == f.first; });
   return found == std::end(all) ? nullptr : found->second;
 }
@@ -118,7 +133,7 @@ void add_face(Mesh& mesh, const std::vector<double>& corners, const std::string&
 
 }  // namespace
 
-Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
+Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool flip_v) {
   const Header header = read_header(std::string(bytes.begin(), bytes.end()), path);
   Numbers numbers(bytes, header, path);
   Mesh mesh;
@@ -126,14 +141,20 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
   std::vector<double> list;
   for (const Element& e : header.elements) {
     if (e.properties.empty()) continue;
+    const auto uv = uv_names(e);
+    if (e.name == "vertex") {
+      mesh.has_uv = !uv.first.empty();
+      normals = has(e, "nx") && has(e, "ny") && has(e, "nz");
+    }
+    if (e.name == "face" && has(e, "texcoord"))
+      throw Error("texture coordinates of faces are not read", path, "export those of vertices");
     for (std::uint64_t i = 0; i < e.count; ++i) {
       Vertex vertex;
       for (const Property& p : e.properties) {
         if (p.count.empty()) {
           const double v = numbers.next(p.type);
-          float* at = e.name == "vertex" ? field(vertex, p.name) : nullptr;
+          float* at = e.name == "vertex" ? field(vertex, p.name, uv) : nullptr;
           if (at) *at = float(v);
-          normals = normals || (e.name == "vertex" && p.name == "nx");
           continue;
         }
         const double count = numbers.next(p.count);
@@ -142,6 +163,7 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
         for (double k = 0; k < count; ++k) list.push_back(numbers.next(p.type));
         if (e.name == "face" && p.name.rfind("vertex_ind", 0) == 0) add_face(mesh, list, path);
       }
+      if (flip_v) vertex.uv.y = 1 - vertex.uv.y;
       if (e.name == "vertex") mesh.vertices.push_back(vertex);
     }
   }
@@ -149,11 +171,10 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals) {
   if (std::none_of(header.elements.begin(), header.elements.end(), has_faces)) {
     fail("a PLY mesh without faces", path);
   }
-  if (face_normals) {
+  if (face_normals || !normals) {
     for (Vertex& v : mesh.vertices) v.normal = {};
-  } else if (!normals) {
-    compute_normals(mesh);
   }
+  mesh.smooth = !face_normals && !normals;
   return mesh;
 }
 

@@ -69,7 +69,7 @@ void PathTracer::radiance(std::span<CameraRay> rays, std::span<Rgb> out) const {
   std::fill_n(out.begin(), rays.size(), Rgb{});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     wave.paths.push_back({&rays[i].bits, &out[i]});
-    wave.rays.push_back({rays[i].origin, rays[i].direction});
+    wave.rays.push_back(world_.camera_ray(rays[i].origin, rays[i].direction));
   }
   // `depth` counts edges: 1 is what the camera sees directly.
   const int last = world_.scene.max_depth;

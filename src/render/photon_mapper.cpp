@@ -84,7 +84,8 @@ Rgb PhotonMapper::follow(Point origin, Direction direction, int depth, std::uint
                          PathBits& u) const {
   Rgb result, throughput{1, 1, 1};
   for (; edges_left(depth) >= 0; ++depth) {
-    const auto hit = world_.embree.intersect({origin, direction, depth == 1 ? 0 : world_.near(origin)});
+    const auto hit = world_.embree.intersect(depth == 1 ? world_.camera_ray(origin, direction)
+                                                        : Ray{origin, direction, world_.near(origin)});
     if (!hit) {
       if (world_.scene.environment)
         result = result + throughput * world_.scene.environment->radiance(direction);

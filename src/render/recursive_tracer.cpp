@@ -28,8 +28,9 @@ Rgb RecursiveTracer::arriving(const Ray& ray, PathBits& u) const {
     if (!(ray.drawn_pdf > 0)) return 1.f;
     return technique_ == Technique::light ? 0.f : heuristic(technique_, ray.drawn_pdf, other);
   };
-  const float near = ray.depth == 1 ? 0 : world_.near(ray.origin);
-  const auto hit = world_.embree.intersect({ray.origin, ray.direction, near});
+  const auto hit = world_.embree.intersect(
+      ray.depth == 1 ? world_.camera_ray(ray.origin, ray.direction)
+                     : render::Ray{ray.origin, ray.direction, world_.near(ray.origin)});
   if (!hit) {
     if (!world_.scene.environment) return {};
     const auto [radiance, other] = world_.lights.environment(ray.direction);

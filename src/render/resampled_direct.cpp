@@ -55,7 +55,7 @@ ResampledDirect::Arriving ResampledDirect::unshadowed(Point at, Direction direct
 
 Rgb ResampledDirect::radiance(Point origin, Direction direction, PathBits& u) const {
   if (world_.scene.max_depth == 0) return {};
-  const auto hit = world_.embree.intersect({origin, direction});
+  const auto hit = world_.embree.intersect(world_.camera_ray(origin, direction));
   if (!hit) {
     const auto& sky = world_.scene.environment;
     return sky ? sky->radiance(direction) : Rgb{};

@@ -209,6 +209,7 @@ struct Blend final : Scattering {
   std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
     return to_unit_float(u()) < share(uv) ? b->sample_adjoint(wi, uv, u) : a->sample_adjoint(wi, uv, u);
   }
+  bool transmits() const override { return a->transmits() || b->transmits(); }
   Lobes lobes() const override { return both(*a, *b); }
   bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
 };

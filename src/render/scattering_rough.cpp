@@ -13,28 +13,34 @@ namespace reflectree::render {
 namespace {
 
 struct RoughConductor final : Each<RoughConductor> {
-  Microfacets normals;
+  Roughness roughness;
   Rgb eta, k;
-  Texture specular;
-  RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t)
-      : normals(r), eta(e), k(absorption), specular(std::move(t)) {}
+  Texture specular, alpha;
+  RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t, Texture a)
+      : roughness(r), eta(e), k(absorption), specular(std::move(t)), alpha(std::move(a)) {}
+  Microfacets normals_at(Uv uv) const {
+    Roughness here = roughness;
+    if (alpha.picture) here.alpha = eval_picture(alpha, uv).r;
+    return Microfacets(here);
+  }
   // For both directions above the surface: f cos, and the density with which wi is drawn.
-  Value about(Direction wh, Direction wo, Direction wi, Uv uv) const {
+  Value about(const Microfacets& normals, Direction wh, Direction wo, Direction wi, Uv uv) const {
     const float d = normals.d(wh), g1_o = normals.g1(wo), cosine = dot(wo, wh);
     const float common = d * g1_o * normals.g1(wi) / (4 * wo.z);
     return {common * (eval(specular, uv) * fresnel_conductor(cosine, eta, k)),
             normals.pdf(wo, wh, d, g1_o) / (4 * cosine)};
   }
   Value value(Direction wo, Direction wi, Uv uv) const override {
-    return wo.z > 0 && wi.z > 0 ? about(normalize(wo + wi), wo, wi, uv) : Value{};
+    return wo.z > 0 && wi.z > 0 ? about(normals_at(uv), normalize(wo + wi), wo, wi, uv) : Value{};
   }
   Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).f_cos; }
   float pdf(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).pdf; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
-    const Direction wh = normals.sample(wo, u), wi = reflect(wo, wh);
+    const Microfacets here = normals_at(uv);
+    const Direction wh = here.sample(wo, u), wi = reflect(wo, wh);
     if (!(wi.z > 0) || !(dot(wo, wh) > 0)) return std::nullopt;
-    const Value v = about(wh, wo, wi, uv);
+    const Value v = about(here, wh, wo, wi, uv);
     if (!(v.pdf > 0)) return std::nullopt;
     return Scattered{wi, v.pdf, (1 / v.pdf) * v.f_cos};
   }
@@ -51,11 +57,13 @@ struct RoughPlastic final : Each<RoughPlastic> {
   float inside = 0, specular_weight;
   RoughPlastic(Plastic parameters, Roughness r)
       : p(std::move(parameters)), normals(r), specular_weight(specular_share(p)) {
+    r.sample_visible = true;  // the means are over visible normals, however directions are drawn
+    const Microfacets visible(r);
     double sum = 0;
     for (std::size_t i = 0; i < nodes; ++i) {
       const float mu = max(1e-6f, float(i) / float(nodes - 1));
-      through[i] = rough_transmittance(normals, mu, p.eta, 32);
-      sum += double(rough_reflectance(normals, mu, 1 / p.eta, 128) * mu);
+      through[i] = rough_transmittance(visible, mu, p.eta, 32);
+      sum += double(rough_reflectance(visible, mu, 1 / p.eta, 128) * mu);
     }
     inside = float(2 * sum / double(nodes));
   }
@@ -96,8 +104,8 @@ struct RoughPlastic final : Each<RoughPlastic> {
 
 }  // namespace
 
-ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular) {
-  return std::make_shared<RoughConductor>(roughness, eta, k, std::move(specular));
+ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha) {
+  return std::make_shared<RoughConductor>(roughness, eta, k, std::move(specular), std::move(alpha));
 }
 ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness) {
   return std::make_shared<RoughPlastic>(std::move(parameters), roughness);

@@ -82,6 +82,7 @@ struct Glass final : Each<Glass> {
   Texture reflectance, transmittance;
   Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
   Rgb f_cos(Direction, Direction, Uv) const override { return {}; }
+  bool transmits() const override { return true; }
   Lobes lobes() const override { return Lobes::delta; }
   float pdf(Direction, Direction, Uv) const override { return 0; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {

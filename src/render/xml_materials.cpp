@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "xml_materials.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 #include "metals.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/io/material_file.hpp"
@@ -8,54 +11,81 @@
 
 namespace reflectree::render {
 
-// A picture from 8 bits is in sRGB unless it is `raw`.
-Texture MaterialReader::texture(Node n, const char* name, Rgb otherwise) {
-  const Node found = XmlReader::named(n, name), t = found ? xml_.resolve(found) : found;
-  if (!t || std::string_view(t.name()) != "texture") {
-    return {xml_.colour(n, name, otherwise, true), nullptr};
-  }
-  if (XmlReader::type(t) != "bitmap") xml_.unknown(t);
-  xml_.only(t, {"filename", "filter_type", "wrap_mode", "raw"});
-  if (xml_.word(t, "wrap_mode", "repeat") != "repeat") xml_.fail(t, "textures only repeat", "drop wrap_mode");
-  const std::string filter = xml_.word(t, "filter_type", "bilinear");
-  if (filter != "bilinear" && filter != "nearest")
-    xml_.fail(t, "no filter_type '" + filter + "'", "use bilinear or nearest");
-  const std::string file = xml_.beside(xml_.word(t, "filename", ""));
-  Image image = read_image(file);
-  const bool encoded = file.size() > 4 && file.substr(file.size() - 4) == ".png";
-  if (encoded && !xml_.flag(t, "raw", false)) {
-    for (float& v : image.values) v = from_srgb(v);
-  }
-  return {{}, std::make_shared<const Image>(std::move(image)), filter == "nearest"};
+namespace {
+
+struct NamedIndex {
+  std::string_view name;
+  double index;
+};
+// Between 0 and 20 degrees Celsius, at about 589 nm: Mitsuba's names and numbers.
+constexpr NamedIndex indices[] = {
+    {"vacuum", 1},        {"helium", 1.000036},        {"hydrogen", 1.000132},
+    {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.333},
+    {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
+    {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
+    {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
+    {"pyrex", 1.47},      {"acrylic glass", 1.49},     {"polypropylene", 1.49},
+    {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
+    {"pet", 1.575},       {"diamond", 2.419}};
+
+std::string lower(std::string s) {
+  std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return s;
 }
 
-Roughness MaterialReader::roughness(Node n) const {
+}  // namespace
+
+// `picture`: for an alpha that varies; none where it may not.
+Roughness MaterialReader::roughness(Node n, Texture* picture) {
   Roughness r;
-  const std::string kind = xml_.word(n, "distribution", "beckmann");
+  const std::string kind = lower(xml_.word(n, "distribution", "beckmann"));
   if (kind != "beckmann" && kind != "ggx")
     xml_.fail(n, "no distribution '" + kind + "'", "use beckmann or ggx");
   r.kind = kind == "ggx" ? Roughness::Kind::ggx : Roughness::Kind::beckmann;
-  r.alpha = float(xml_.property(n, "alpha", .1));
   r.sample_visible = xml_.flag(n, "sample_visible", true);
+  const Node u = XmlReader::named(n, "alpha_u"), v = XmlReader::named(n, "alpha_v");
+  if (u || v) {
+    if (!u || !v || XmlReader::named(n, "alpha"))
+      xml_.fail(n, "either alpha, or alpha_u and alpha_v", "write alpha");
+    r.alpha = float(xml_.property(n, "alpha_u", 0));
+    if (float(xml_.property(n, "alpha_v", 0)) != r.alpha)
+      xml_.fail(v, "anisotropic materials are not read here",
+                "write the same number for alpha_u and alpha_v");
+  } else if (picture) {
+    *picture = number(n, "alpha", .1);
+    if (!picture->picture) r.alpha = picture->colour.r;
+  } else {
+    r.alpha = float(xml_.property(n, "alpha", .1));
+  }
   if (!(r.alpha > 0)) xml_.fail(n, "alpha is not positive", "use conductor or plastic");
   return r;
 }
 
+double MaterialReader::ior(Node n, const char* name, double otherwise) const {
+  const Node c = XmlReader::named(n, name);
+  if (!c || std::string_view(c.name()) != "string") return xml_.property(n, name, otherwise);
+  const std::string word = lower(xml_.word(n, name, ""));
+  const auto* found =
+      std::find_if(std::begin(indices), std::end(indices), [&](auto& i) { return i.name == word; });
+  if (found != std::end(indices)) return found->index;
+  std::string all;
+  for (const NamedIndex& i : indices) all += (all.empty() ? "" : ", ") + std::string(i.name);
+  xml_.fail(c, "no index of refraction is known of '" + word + "'", "write its number, or one of " + all);
+}
+
 float MaterialReader::relative_ior(Node n, double inside) const {
-  for (const char* name : {"int_ior", "ext_ior"}) {
-    const Node c = XmlReader::named(n, name);
-    if (c && std::string_view(c.name()) == "string")
-      xml_.fail(c, "indices are numbers here", "write its number");
-  }
-  const double in = xml_.property(n, "int_ior", inside), out = xml_.property(n, "ext_ior", 1.000277);
+  const double in = ior(n, "int_ior", inside), out = ior(n, "ext_ior", 1.000277);
   if (!(in > 0 && out > 0)) xml_.fail(n, "an index of refraction is not positive", "give positive numbers");
   return float(in / out);
 }
 
+// A metal's name, or eta and k; Mitsuba's k is 1 where eta alone is given.
 std::pair<Rgb, Rgb> MaterialReader::eta_and_k(Node n) const {
-  if (XmlReader::named(n, "eta") && XmlReader::named(n, "k"))
-    return {xml_.colour(n, "eta", {}, false), xml_.colour(n, "k", {}, false)};
   const std::string name = xml_.word(n, "material", "none");
+  const Node own = XmlReader::named(n, "eta") ? XmlReader::named(n, "eta") : XmlReader::named(n, "k");
+  if (own && name != "none") xml_.fail(own, "both a material and eta or k", "keep one of the two");
+  if (own)
+    return {xml_.colour(n, "eta", {}, ColourOf::index), xml_.colour(n, "k", {1, 1, 1}, ColourOf::index)};
   if (name == "none") return {};
   if (const Metal* metal = find_metal(name)) return {metal->eta, metal->k};
   xml_.fail(n, "no metal '" + name + "'", "give eta and k, or one of " + metal_names());
@@ -94,19 +124,25 @@ ScatteringPtr MaterialReader::from_text(Node n) {
   const auto load = [this](const std::string& p, const std::string& m) {
     return load_brdf(xml_.beside(p), m);
   };
-  return with_sampler(make_brdf(parse_material(text), load), text);
+  return with_sampler(xml_.placed(n, [&] { return make_brdf(parse_material(text), load); }), text);
 }
 
 ScatteringPtr MaterialReader::from_file(Node n) {
   xml_.only(n, {"filename"});
-  return with_sampler(load_brdf(xml_.beside(xml_.word(n, "filename", ""))), "");
+  const std::string file = xml_.file(n);
+  return with_sampler(xml_.placed(n, [&] { return load_brdf(file); }), "");
 }
 
 std::vector<ScatteringPtr> MaterialReader::inside(Node n, int depth) {
   std::vector<ScatteringPtr> found;
   for (const Node c : n.children()) {
+    if (c.type() != pugi::node_element) continue;
     const Node meant = xml_.resolve(c);
-    if (std::string_view(meant.name()) == "bsdf") found.push_back(read(meant, depth + 1));
+    if (std::string_view(meant.name()) == "bsdf") {
+      found.push_back(read(meant, depth + 1));
+    } else if (meant != c && c.attribute("name").value() != std::string_view("weight")) {
+      xml_.fail(c, "refers to a <" + std::string(meant.name()) + ">", "refer to a bsdf");
+    }
   }
   return found;
 }
@@ -131,9 +167,12 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
     return conductor(eta, k, texture(n, "specular_reflectance", white));
   }
   if (type == "roughconductor") {
-    xml_.only(n, {"eta", "k", "material", "specular_reflectance", "alpha", "distribution", "sample_visible"});
+    xml_.only(n, {"eta", "k", "material", "specular_reflectance", "alpha", "alpha_u", "alpha_v",
+                  "distribution", "sample_visible"});
     const auto [eta, k] = eta_and_k(n);
-    return rough_conductor(roughness(n), eta, k, texture(n, "specular_reflectance", white));
+    Texture alpha;
+    const Roughness r = roughness(n, &alpha);
+    return rough_conductor(r, eta, k, texture(n, "specular_reflectance", white), std::move(alpha));
   }
   if (type == "plastic") {
     xml_.only(n, {"int_ior", "ext_ior", "diffuse_reflectance", "specular_reflectance", "nonlinear"});
@@ -142,7 +181,7 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
   if (type == "roughplastic") {
     xml_.only(n, {"int_ior", "ext_ior", "diffuse_reflectance", "specular_reflectance", "nonlinear", "alpha",
                   "distribution", "sample_visible"});
-    return rough_plastic(plastic_of(n), roughness(n));
+    return rough_plastic(plastic_of(n), roughness(n, nullptr));
   }
   if (type == "dielectric") {
     xml_.only(n, {"int_ior", "ext_ior", "specular_reflectance", "specular_transmittance"});
@@ -152,14 +191,21 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
   if (type == "measured") return from_file(n);
   if (type == "reflectree") return from_text(n);
   if (type == "twosided") {
+    xml_.only(n, {"bsdf", "ref"});
     const auto sides = inside(n, depth);
     if (sides.empty() || sides.size() > 2) xml_.fail(n, "one or two bsdfs are needed", "put them there");
+    for (const ScatteringPtr& side : sides) {
+      if (side->transmits())
+        xml_.fail(n, "what lets light through has two sides already", "leave <twosided> out");
+    }
     return two_sided(sides.front(), sides.back());
   }
   if (type == "blendbsdf") {
+    xml_.only(n, {"bsdf", "ref", "weight"});
+    if (!XmlReader::named(n, "weight")) xml_.fail(n, "a blend without 'weight'", "add it, between 0 and 1");
     const auto parts = inside(n, depth);
     if (parts.size() != 2) xml_.fail(n, "two bsdfs are needed", "put them there");
-    return blend(texture(n, "weight", {.5f, .5f, .5f}), parts[0], parts[1]);
+    return blend(number(n, "weight", 0), parts[0], parts[1]);
   }
   xml_.unknown(n);
 }

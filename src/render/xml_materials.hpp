@@ -19,9 +19,15 @@ class MaterialReader {
   ScatteringPtr with_sampler(const AnyBrdf& f, const std::string& text);
   std::vector<ScatteringPtr> inside(Node n, int depth);
   Texture texture(Node n, const char* name, Rgb otherwise);
-  Roughness roughness(Node n) const;
+  // A number that may vary over the surface: a colour's mean, a picture's luminance, as in Mitsuba.
+  Texture number(Node n, const char* name, double otherwise);
+  Texture bitmap(Node t) const;
+  Texture checkerboard(Node t) const;
+  std::array<float, 6> to_uv(Node t) const;
+  Roughness roughness(Node n, Texture* picture);
   Plastic plastic_of(Node n);
   float relative_ior(Node n, double inside) const;
+  double ior(Node n, const char* name, double otherwise) const;
   std::pair<Rgb, Rgb> eta_and_k(Node n) const;
 
   const XmlReader& xml_;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The words of Mitsuba's XML: properties with $names, numbers, transforms, colours. Errors name line and
-// column.
+// column. A property of another kind than is asked for is an error, never the default.
 #pragma once
 
 #include <initializer_list>
 #include <pugixml.hpp>
+#include <set>
 
+#include "reflectree/error.hpp"
+#include "scene_colour.hpp"
 #include "transform.hpp"
 
 namespace reflectree::render {
@@ -28,6 +31,17 @@ class XmlReader {
   const SceneOptions& options() const { return options_; }
   // A file that the scene names; its contents belong to the scene's identity.
   std::string beside(const std::string& file) const;
+  // The one that `n` names as "filename".
+  std::string file(Node n) const;
+  // What `read` returns; its errors get the element's place.
+  template <class Read>
+  auto placed(Node n, const Read& read) const {
+    try {
+      return read();
+    } catch (const Error& e) {
+      rethrow(n, e);
+    }
+  }
   std::uint64_t fingerprint() const;
 
   [[noreturn]] void fail(Node n, const std::string& what, const std::string& how) const;
@@ -39,7 +53,9 @@ class XmlReader {
 
   static std::string type(Node n) { return n.attribute("type").value(); }
   static Node named(Node n, const char* name) { return n.find_child_by_attribute("name", name); }
-  std::string text(Node n, const char* attribute) const;
+  static std::string text(Node n, const char* attribute) { return n.attribute(attribute).value(); }
+  // The only child of this tag, or none.
+  Node child(Node n, const char* tag) const;
   std::vector<double> numbers(Node n, const std::string& words) const;
   double number(Node n, const char* attribute, double otherwise) const;
   Vec3<double> triple(Node n, const char* attribute) const;
@@ -49,11 +65,19 @@ class XmlReader {
   bool flag(Node n, const char* name, bool otherwise) const;
   std::string word(Node n, const char* name, const std::string& otherwise) const;
   Vec3<double> point(Node n, const char* name, Vec3<double> otherwise) const;
-  Rgb colour(Node n, const char* name, Rgb otherwise, bool reflectance) const;
+  Rgb colour(Node n, const char* name, Rgb otherwise, ColourOf of) const;
   Matrix transform(Node n) const;
+  // Where the property's transform turns the axes to. Throws Error where it scales them.
+  Frame<float> rotation(Node n, const char* name) const;
 
  private:
   std::string place(std::ptrdiff_t offset) const;
+  [[noreturn]] void rethrow(Node n, const Error& e) const;
+  void replace_names(Node n, int depth);
+  void check(Node n) const;  // attributes, names and ids of all that is in it
+  void check_attributes(Node n) const;
+  void need(Node property, Names tags, const std::string& what) const;
+  SampledSpectrum sampled(Node n) const;
   Matrix operation(Node op) const;
   std::uint64_t hash(Node n, std::uint64_t h) const;
 
@@ -61,6 +85,8 @@ class XmlReader {
   const std::string& path_;
   const SceneOptions& options_;
   std::map<std::string, std::string> defines_;
+  std::set<std::string> used_;               // names of `defines_`
+  mutable std::map<std::string, Node> ids_;  // elements by their id
   pugi::xml_document document_;
   Node root_;
   mutable std::vector<std::string> files_;

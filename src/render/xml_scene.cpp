@@ -5,6 +5,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/io/file.hpp"
 #include "reflectree/io/file_kind.hpp"
+#include "xml_sensor.hpp"
 #include "xml_shapes.hpp"
 
 namespace reflectree::render {
@@ -16,13 +17,15 @@ class SceneReader {
   SceneReader(const XmlReader& xml, const Host& host) : xml_(xml), materials_(xml, host) {}
 
   Scene read(const std::string& path) {
+    scene_.max_depth = -1;  // what Mitsuba does without an integrator
+    xml_.child(xml_.root(), "integrator");
     for (const Node n : xml_.root().children()) {
       if (n.type() != pugi::node_element) continue;
       const std::string_view tag = n.name();
       if (tag == "integrator")
         read_integrator(n);
-      else if (tag == "sensor")
-        read_sensor(n);
+      else if (tag == "sensor")  // the first one takes the picture, as in Mitsuba
+        scene_.width == 0 ? read_sensor(xml_, n, scene_) : void();
       else if (tag == "shape")
         read_shape(xml_, materials_, n, scene_);
       else if (tag == "emitter")
@@ -40,87 +43,40 @@ class SceneReader {
     if (!method) xml_.unknown(n);
     Transport& t = scene_.transport;
     t.method = *method;
+    if (xml_.flag(n, "hide_emitters", false))
+      xml_.fail(XmlReader::named(n, "hide_emitters"), "emitters cannot be hidden here", "write false");
     if (t.method == Transport::Method::direct) {
-      xml_.only(n, {"shading_samples"});
+      xml_.only(n, {"shading_samples", "hide_emitters"});
       t.split = xml_.integer(n, "shading_samples", 0);
       return;
     }
     if (t.method == Transport::Method::photons) {
-      xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather"});
+      xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather",
+                    "hide_emitters"});
       t.photons.count = xml_.integer(n, "photon_count", 0);
       t.photons.radius = float(xml_.property(n, "radius", 0));
       t.photons.shrink = float(xml_.property(n, "alpha", 2 / 3.));
       t.photons.gather = xml_.flag(n, "final_gather", true);
     } else if (t.method == Transport::Method::path) {
-      xml_.only(n, {"max_depth", "rr_depth"});
+      xml_.only(n, {"max_depth", "rr_depth", "hide_emitters"});
     } else {
-      xml_.only(n, {"max_depth", "rr_depth", "split"});
+      xml_.only(n, {"max_depth", "rr_depth", "split", "hide_emitters"});
     }
     t.split = xml_.integer(n, "split", 0);
     scene_.max_depth = xml_.integer(n, "max_depth", -1);
     scene_.rr_depth = xml_.integer(n, "rr_depth", 5);
-  }
-
-  void read_filter(Node n) {
-    const std::string type = n ? XmlReader::type(n) : "gaussian";
-    using Kind = Filter::Kind;
-    if (type == "box") {
-      xml_.only(n, {"radius"});
-      scene_.filter = {Kind::box, float(xml_.property(n, "radius", .5))};
-    } else if (type == "tent") {
-      xml_.only(n, {"radius"});
-      scene_.filter = {Kind::tent, float(xml_.property(n, "radius", 1))};
-    } else if (type == "gaussian") {
-      xml_.only(n, {"stddev"});
-      scene_.filter = {Kind::gaussian, float(xml_.property(n, "stddev", .5))};
-    } else {
-      xml_.unknown(n);
-    }
-    if (!(scene_.filter.width > 0)) xml_.fail(n, "the filter has no width", "make it positive");
-  }
-
-  void read_sensor(Node n) {
-    if (XmlReader::type(n) != "perspective") xml_.unknown(n);
-    xml_.only(n,
-              {"fov", "fov_axis", "near_clip", "far_clip", "focus_distance", "to_world", "sampler", "film"});
-    const Node film = n.child("film"), sampler = n.child("sampler");
-    if (!film) xml_.fail(n, "a sensor without a film", "add an hdrfilm");
-    if (XmlReader::type(film) != "hdrfilm") xml_.unknown(film);
-    if (sampler) {
-      const auto points = points_of(XmlReader::type(sampler));
-      if (!points) xml_.unknown(sampler);
-      xml_.only(sampler, {"sample_count", "seed"});  // the seed is the command's
-      scene_.points.kind = *points;
-    }
-    xml_.only(film, {"width", "height", "rfilter", "pixel_format"});
-    read_filter(film.child("rfilter"));
-    const double width = xml_.property(film, "width", 768), height = xml_.property(film, "height", 576);
-    const double samples = xml_.property(sampler, "sample_count", 16);
-    if (!(width >= 1 && height >= 1 && width <= 65536 && height <= 65536))
-      xml_.fail(film, "a film without pixels", "give it a positive width and height");
-    if (!(samples >= 1 && samples <= 1e9))
-      xml_.fail(sampler, "sample_count is not positive", "give a positive number");
-    scene_.width = int(width), scene_.height = int(height), scene_.samples = int(samples);
-    read_camera(n, width, height);
-  }
-
-  void read_camera(Node n, double width, double height) {
-    const std::string along = xml_.word(n, "fov_axis", "x");
-    if (along != "x" && along != "y" && along != "smaller" && along != "larger")
-      xml_.fail(n, "no fov_axis '" + along + "'", "use x, y, smaller or larger");
-    const bool vertical =
-        along == "y" || (along == "smaller" && height < width) || (along == "larger" && height > width);
-    const float t = float(std::tan(xml_.property(n, "fov", 50) * pi_v<double> / 360)),
-                aspect = float(width / height);
-    const Matrix m = xml_.transform(XmlReader::named(n, "to_world"));
-    const auto axis = [&](Vec3<double> v) { return normalize(apply(m, v, 0)); };
-    scene_.camera = {apply(m, {}, 1), axis({1, 0, 0}),           axis({0, 1, 0}),
-                     axis({0, 0, 1}), vertical ? t * aspect : t, vertical ? t : t / aspect};
+    if (scene_.rr_depth < 1) xml_.fail(n, "rr_depth is not positive", "write 1 or more");
   }
 
   void set_environment(Node n, Environment e) {
     if (scene_.environment) xml_.fail(n, "a second environment", "keep one of the two");
     scene_.environment = std::move(e);
+  }
+
+  // A light is placed by its transform or by this, not by both.
+  void either(Node n, const char* name) const {
+    if (XmlReader::named(n, name) && XmlReader::named(n, "to_world"))
+      xml_.fail(n, "both '" + std::string(name) + "' and 'to_world'", "keep one of the two");
   }
 
   void read_emitter(Node n) {
@@ -130,23 +86,27 @@ class SceneReader {
     if (type == "area" && n.attribute("id")) return;  // reached through references
     if (type == "constant") {
       xml_.only(n, {"radiance"});
-      set_environment(n, Environment(xml_.colour(n, "radiance", white, false)));
+      set_environment(n, Environment(xml_.colour(n, "radiance", white, ColourOf::light)));
     } else if (type == "envmap") {
       xml_.only(n, {"filename", "scale", "to_world"});
-      const auto axis = [&](Vec3<double> v) { return normalize(apply(m, v, 0)); };
-      const std::string file = xml_.beside(xml_.word(n, "filename", ""));
-      set_environment(n, Environment(read_image(file), {axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})},
-                                     float(xml_.property(n, "scale", 1)), file));
+      const Frame<float> frame = xml_.rotation(n, "to_world");
+      const std::string file = xml_.file(n);
+      const float scale = float(xml_.property(n, "scale", 1));
+      if (!(scale >= 0)) xml_.fail(n, "the sky's scale is negative", "write a number from 0 on");
+      xml_.placed(n, [&] { set_environment(n, {rgb_of(read_image(file), file), frame, scale, file}); });
     } else if (type == "point") {
       xml_.only(n, {"position", "intensity", "to_world"});
+      either(n, "position");
       const auto place = apply_double(m, xml_.point(n, "position", {}), 1);
       if (!within_reach(place)) xml_.fail(n, "the light is beyond 1e15", "use larger units");
-      scene_.point_lights.push_back({to_float(place), xml_.colour(n, "intensity", white, false)});
+      scene_.point_lights.push_back({to_float(place), xml_.colour(n, "intensity", white, ColourOf::light)});
     } else if (type == "directional") {
       xml_.only(n, {"direction", "irradiance", "to_world"});
+      either(n, "direction");
       const Direction d = apply(m, xml_.point(n, "direction", {0, 0, 1}), 0);
       if (!(length(d) > 0)) xml_.fail(n, "the light goes nowhere", "give it a direction");
-      scene_.directional_lights.push_back({normalize(d), xml_.colour(n, "irradiance", white, false)});
+      scene_.directional_lights.push_back(
+          {normalize(d), xml_.colour(n, "irradiance", white, ColourOf::light)});
     } else {
       xml_.unknown(n);
     }

@@ -9,19 +9,24 @@ namespace reflectree::render {
 
 namespace {
 
-// Six rectangles from -1 to 1, normals outwards.
+// Six squares from -1 to 1, normals outwards, with Mitsuba's texture coordinates: on each, where u = 0 and
+// v = 1, the side along which u grows and the one along which v falls.
 Mesh cube() {
+  struct Side {
+    Point at;
+    Direction along_u, against_v;
+  };
+  const Side sides[] = {{{1, -1, -1}, {0, 0, 1}, {-1, 0, 0}}, {{1, 1, -1}, {-1, 0, 0}, {0, 0, 1}},
+                        {{1, -1, -1}, {0, 1, 0}, {0, 0, 1}},  {{1, -1, 1}, {0, 1, 0}, {-1, 0, 0}},
+                        {{-1, -1, 1}, {0, 1, 0}, {0, 0, -1}}, {{1, 1, -1}, {0, -1, 0}, {-1, 0, 0}}};
   Mesh all;
-  const Direction axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (const float side : {-1.f, 1.f}) {
-      const Direction n = side * axes[k], s = axes[(k + 1) % 3], t = cross(n, s);
-      const auto base = std::uint32_t(all.vertices.size());
-      for (const auto& [x, y] : {Uv{-1, -1}, Uv{1, -1}, Uv{1, 1}, Uv{-1, 1}})
-        all.vertices.push_back({n + x * s + y * t, n, {(1 + x) / 2, (1 + y) / 2}});
-      all.triangles.push_back({base, base + 1, base + 2});
-      all.triangles.push_back({base, base + 2, base + 3});
-    }
+  for (const Side& side : sides) {
+    const Direction n = cross(side.along_u, side.against_v);
+    const auto base = std::uint32_t(all.vertices.size());
+    for (const auto& [u, v] : {Uv{0, 1}, Uv{1, 1}, Uv{1, 0}, Uv{0, 0}})
+      all.vertices.push_back({side.at + (2 * u) * side.along_u + (2 * (1 - v)) * side.against_v, n, {u, v}});
+    all.triangles.push_back({base, base + 1, base + 2});
+    all.triangles.push_back({base + 3, base, base + 2});
   }
   return all;
 }
@@ -31,12 +36,20 @@ bool within_reach(Point p) { return render::within_reach(to_double(p)); }
 
 void add_mesh(const XmlReader& xml, Node n, Mesh mesh, const Matrix& m, bool flip, std::uint32_t surface,
               Scene& scene) {
-  const auto base = std::uint32_t(scene.vertices.size());
-  for (Vertex v : mesh.vertices) {
+  using Mapping = Surface::Mapping;
+  scene.surfaces[surface].mapping = mesh.has_uv ? Mapping::vertices
+                                    : flip      ? Mapping::swapped_corners
+                                                : Mapping::corners;
+  for (Vertex& v : mesh.vertices) {
     v.at = apply(m, {v.at.x, v.at.y, v.at.z}, 1);
-    v.normal = apply_to_normal(m, flip ? -v.normal : v.normal);
     if (!within_reach(v.at) || !finite(v.normal))
       xml.fail(n, "a corner that does not exist, is not finite or beyond 1e15", "mend the mesh");
+    v.normal = apply_to_normal(m, v.normal);
+  }
+  if (mesh.smooth) compute_normals(mesh);  // of the triangles as they are now
+  const auto base = std::uint32_t(scene.vertices.size());
+  for (Vertex& v : mesh.vertices) {
+    if (flip) v.normal = -v.normal;
     scene.vertices.push_back(v);
   }
   for (auto corner : mesh.triangles) {
@@ -63,7 +76,8 @@ void add_sphere(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::u
   const auto centre = apply_double(m, xml.point(n, "center", {}), 1);
   if (!render::within_reach(centre) || !(radius * scale <= largest_coordinate))
     xml.fail(n, "the sphere reaches beyond 1e15", "use larger units");
-  scene.spheres.push_back({centre, radius * scale, flip, {unit(x), unit(y), unit(z)}, surface});
+  const bool mirrored = dot(cross(x, y), z) < 0;  // turns the sphere inside out, as in Mitsuba
+  scene.spheres.push_back({centre, radius * scale, flip != mirrored, {unit(x), unit(y), unit(z)}, surface});
 }
 
 void add_flat(const XmlReader& xml, Node n, const Matrix& m, bool flip, std::uint32_t surface,
@@ -85,14 +99,20 @@ void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& 
   Surface surface{nullptr, {}};
   bool shines = false;
   for (const Node c : n.children()) {
+    if (c.type() != pugi::node_element) continue;
     const Node meant = xml.resolve(c);
     const std::string_view tag = meant.name();
-    if (tag == "bsdf") surface.scattering = materials.read(meant);
-    if (tag == "emitter") {
+    if (tag == "bsdf") {
+      if (surface.scattering) xml.fail(c, "a second material", "keep one of the two");
+      surface.scattering = materials.read(meant);
+    } else if (tag == "emitter") {
       if (XmlReader::type(meant) != "area") xml.unknown(meant);
+      if (shines) xml.fail(c, "a second emitter", "keep one of the two");
       xml.only(meant, {"radiance"});
       shines = true;
-      surface.radiance = xml.colour(meant, "radiance", {1, 1, 1}, false);
+      surface.radiance = xml.colour(meant, "radiance", {1, 1, 1}, ColourOf::light);
+    } else if (meant != c) {
+      xml.fail(c, "a shape cannot refer to a <" + std::string(tag) + ">", "refer to a bsdf or an emitter");
     }
   }
   // As in Mitsuba, what shines and names no material is black, and whatever else names none is grey.
@@ -119,11 +139,16 @@ void read_shape(const XmlReader& xml, MaterialReader& materials, Node n, Scene& 
   } else if (type == "obj" || type == "ply") {
     xml.only(n, {"filename", "to_world", "bsdf", "ref", "emitter", "face_normals", "flip_normals",
                  "flip_tex_coords"});
-    const bool flip_v = xml.flag(n, "flip_tex_coords", true);
-    const std::string path = xml.beside(xml.word(n, "filename", ""));
-    const Bytes bytes = read_file(path, largest_mesh_file);
-    add_mesh(xml, n, type == "obj" ? read_obj(bytes, path, flat, flip_v) : read_ply(bytes, path, flat), m,
-             flip, index, scene);
+    const bool flip_v = xml.flag(n, "flip_tex_coords", type == "obj");
+    const std::string path = xml.file(n);
+    const auto read = [&] {
+      const Bytes bytes = read_file(path, largest_mesh_file);
+      return type == "obj" ? read_obj(bytes, path, flat, flip_v) : read_ply(bytes, path, flat, flip_v);
+    };
+    const Mesh mesh = xml.placed(n, read);
+    if (mesh.triangles.empty())
+      xml.fail(n, path + " holds no triangles", "name a mesh, or leave the shape out");
+    add_mesh(xml, n, mesh, m, flip, index, scene);
   } else {
     xml.unknown(n);
   }

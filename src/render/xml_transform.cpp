@@ -6,7 +6,7 @@ namespace reflectree::render {
 
 namespace {
 
-Matrix rotation(Vec3<double> a, double degrees) {  // Rodrigues
+Matrix turn_about(Vec3<double> a, double degrees) {  // Rodrigues
   const double t = degrees * pi_v<double> / 180, c = std::cos(t), s = std::sin(t);
   const double axis[3] = {a.x, a.y, a.z};
   const double turn[3][3] = {{0, -a.z, a.y}, {a.z, 0, -a.x}, {-a.y, a.x, 0}};
@@ -39,10 +39,11 @@ Matrix XmlReader::operation(Node op) const {
     const Vec3<double> axis = op.attribute("value")
                                   ? triple(op, "value")
                                   : Vec3<double>{number(op, "x", 0), number(op, "y", 0), number(op, "z", 0)};
-    return rotation(normalize(axis), number(op, "angle", 0));
+    return turn_about(normalize(axis), number(op, "angle", 0));
   }
   if (tag == "lookat") {
     const auto o = triple(op, "origin"), d = normalize(triple(op, "target") - o);
+    if (!op.attribute("up")) fail(op, "<lookat> without 'up'", "add up=\"x, y, z\"");
     const auto left = normalize(cross(triple(op, "up"), d)), up = cross(d, left);
     return {{{left.x, up.x, d.x, o.x}, {left.y, up.y, d.y, o.y}, {left.z, up.z, d.z, o.z}, {0, 0, 0, 1}}};
   }
@@ -60,6 +61,7 @@ Matrix XmlReader::operation(Node op) const {
 // Each operation acts on what those before it have made.
 Matrix XmlReader::transform(Node n) const {
   Matrix all = identity;
+  if (n) need(n, {"transform"}, "a transform");
   for (const Node op : n.children()) {
     if (op.type() == pugi::node_element) all = operation(op) * all;
   }
@@ -70,6 +72,18 @@ Matrix XmlReader::transform(Node n) const {
     }
   }
   return all;
+}
+
+Frame<float> XmlReader::rotation(Node n, const char* name) const {
+  const Node c = named(n, name);
+  const Matrix m = transform(c);
+  const auto axis = [&](Vec3<double> v) { return apply_double(m, v, 0); };
+  const Vec3<double> x = axis({1, 0, 0}), y = axis({0, 1, 0}), z = axis({0, 0, 1});
+  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-3; };
+  if (!near(dot(x, x), 1) || !near(dot(y, y), 1) || !near(dot(z, z), 1) || !near(dot(x, y), 0) ||
+      !near(dot(y, z), 0) || !near(dot(z, x), 0))
+    fail(c, "'" + std::string(name) + "' scales, and may only turn and move here", "leave the scale out");
+  return {to_float(normalize(x)), to_float(normalize(y)), to_float(normalize(z))};
 }
 
 }  // namespace reflectree::render

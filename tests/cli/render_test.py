@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What surrounds a render: where its time goes, whose film it goes on with, how different two pictures look."""
+import pathlib
+import sys
 import unittest
 
 from program import ProgramTest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "words"))
+from pixels import exr, png  # noqa: E402
 
 SCENE = """<scene version="3.0.0"><default name="grey" value="0.5"/><integrator type="path"/>
 <sensor type="perspective"><transform name="to_world"><lookat origin="0, -3, 1" target="0, 0, 0.8" up="0, 0, 1"/>
@@ -38,6 +43,18 @@ class Render(ProgramTest):
         for options in (["-D", "grey=0.4"], ["--technique", "power"], ["--seed", 2], ["--integrator", "recursive"]):
             _, said = self.run_program("render", self.scene, "--spp", 6, "--resume", *options, code=2)
             self.assertIn("another scene", said, options)
+
+    def test_a_name_that_the_scene_does_not_say_is_an_error(self):
+        _, said = self.run_program("render", self.scene, "--spp", 1, "-D", "gray=0.4", code=2)
+        self.assertIn("the scene does not say $gray", said)
+
+    def test_comparing_a_png_compares_light(self):
+        # 128 of 255 is .2159 in linear light.
+        self.write("a.png", png([[(128, 128, 128)] * 8] * 8))
+        self.write("b.exr", exr([[(.2159, .2159, .2159)] * 8] * 8, "RGB"))
+        for channel in self.json_of("image-compare", "a.png", "b.exr")["channels"]:
+            self.assertAlmostEqual(channel["mean_a"], .2159, places=4)
+            self.assertAlmostEqual(channel["mean_a"] / channel["mean_b"], 1, places=3)
 
     def test_flip(self):
         self.run_program("render", self.scene, "--spp", 4, "-o", "a.exr")

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of the render room: meshes and scenes.
+// The readers of the render room: pictures, meshes and scenes.
 #include <cmath>
 
+#include "../scratch.hpp"
 #include "expect.hpp"
+#include "reflectree/io/file.hpp"
+#include "reflectree/io/image.hpp"
 #include "reflectree/render/film.hpp"
 #include "reflectree/render/mesh_files.hpp"
 #include "targets.hpp"
@@ -12,6 +15,20 @@ namespace {
 
 using namespace render;
 
+// A picture as it comes, then its colours.
+template <Image read(ByteView, const std::string&)>
+void run_picture(ByteView bytes) {
+  expect_error_or_success([&] {
+    const Image all = read(bytes, "picture");
+    require(all.values.size() == std::size_t(all.width) * std::size_t(all.height) * all.channels.size());
+    for (const bool raw : {false, true}) {
+      const Image shown = colours_of(all, "picture", raw);
+      require(shown.channels.size() == 1 || shown.channels.size() == 3);
+      for (const float v : shown.values) require(std::isfinite(v));
+    }
+  });
+}
+
 void require_sound(const Mesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) require(corner < mesh.vertices.size());
@@ -20,7 +37,7 @@ void require_sound(const Mesh& mesh) {
 
 void run_ply(ByteView bytes) {
   for (const bool flat : {false, true})
-    expect_error_or_success([&] { require_sound(read_ply(bytes, "mesh", flat)); });
+    expect_error_or_success([&] { require_sound(read_ply(bytes, "mesh", flat, flat)); });
 }
 
 void run_obj(ByteView bytes) {
@@ -45,10 +62,48 @@ void run_scene(ByteView bytes) {
 
 Bytes as_bytes(std::string_view text) { return {text.begin(), text.end()}; }
 
+// 2 x 1 pixels of 16 bits, grey with alpha; PNG's own sums of bytes are right.
+Bytes grey16() {
+  return {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+          0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x10, 0x04, 0x00, 0x00, 0x00, 0x0e,
+          0xbb, 0x6b, 0x42, 0x00, 0x00, 0x00, 0x11, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x78,
+          0x95, 0xc0, 0xfc, 0x82, 0x81, 0xf5, 0xff, 0x7f, 0x00, 0x11, 0x9f, 0x04, 0x39, 0xd7, 0x36,
+          0x60, 0x11, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+}
+
 constexpr std::string_view corners =
     "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty "
     "float v\n"
     "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+
+Bytes file_of(void (*write)(const std::string&, const Image&), const char* name, const Image& image) {
+  const std::string path = scratch(name);
+  write(path, image);
+  return read_file(path, 1U << 20U);
+}
+
+Image spots(std::vector<std::string> channels) {
+  Image image = make_image(5, 3, std::move(channels));
+  for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = float(i % 7) / 7;
+  return image;
+}
+
+std::vector<Bytes> png_seeds() {
+  const auto write = [](const std::string& path, const Image& image) { write_png(path, image); };
+  return {file_of(write, "seed.png", spots({"R", "G", "B"})), grey16()};
+}
+std::vector<Bytes> exr_seeds() {
+  return {file_of(write_exr, "seed.exr", spots({"R", "G", "B", "A"})),
+          file_of(write_exr, "seed.exr", spots({"diffuse.R", "diffuse.G", "diffuse.B"})),
+          file_of(write_exr, "seed.exr", spots({"Y", "Z"}))};
+}
+std::vector<Bytes> hdr_seeds() {
+  Bytes flat = as_bytes("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n");
+  Bytes coded = as_bytes("#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n");
+  for (const int v : {128, 64, 0, 129, 1, 2, 3, 0}) flat.push_back(std::uint8_t(v));
+  for (const int v : {2, 2, 0, 8, 136, 128, 136, 64, 136, 32, 136, 129}) coded.push_back(std::uint8_t(v));
+  return {flat, coded};
+}
 
 std::vector<Bytes> ply_seeds() {
   Bytes binary;
@@ -96,6 +151,11 @@ std::vector<Bytes> scene_seeds() {
 <emitter type="area"><spectrum name="radiance" value="400:1, 700:2"/></emitter></shape>
 <emitter type="point"><point name="position" value="1,2,3"/></emitter>
 <emitter type="directional"><vector name="direction" value="0,0,-1"/></emitter>)"),
+      with(R"(<shape type="cube"><transform name="to_world"><scale x="-1"/></transform><bsdf type="diffuse">
+<texture type="checkerboard" name="reflectance"><rgb name="color0" value=".9 .2 .1"/><transform name="to_uv">
+<scale x="3"/></transform></texture></bsdf></shape><shape type="sphere"><bsdf type="roughconductor">
+<texture type="checkerboard" name="alpha"/><spectrum name="eta" value="400:1, 700:2"/></bsdf></shape>
+<emitter type="constant"><spectrum name="radiance" value="2"/></emitter>)"),
       with(
           R"(<shape type="sphere"><bsdf type="reflectree"><string name="material" value="lambert:rho=0.5"/></bsdf>
 </shape>)")};
@@ -104,8 +164,12 @@ std::vector<Bytes> scene_seeds() {
 }  // namespace
 
 std::span<const Target> targets() {
-  static const Target all[] = {
-      {"ply", run_ply, ply_seeds}, {"obj", run_obj, obj_seeds}, {"scene", run_scene, scene_seeds}};
+  static const Target all[] = {{"png", run_picture<read_png>, png_seeds},
+                               {"exr", run_picture<read_exr>, exr_seeds},
+                               {"hdr", run_picture<read_hdr>, hdr_seeds},
+                               {"ply", run_ply, ply_seeds},
+                               {"obj", run_obj, obj_seeds},
+                               {"scene", run_scene, scene_seeds}};
   return all;
 }
 

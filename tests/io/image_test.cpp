@@ -38,6 +38,23 @@ TEST(Image, ExrReturnsEveryBitLayerAndWord) {
   std::filesystem::remove(path);
 }
 
+TEST(Image, ExrHeadersThatLieAreRefusedBeforeMemoryIsAskedFor) {
+  const std::string path = scratch("lies.exr");
+  write_exr(path, noise(4, 4, {"B", "G", "R"}));
+  const Bytes good = read_file(path, 1 << 20);
+  const std::string text(good.begin(), good.end());
+  const auto with = [&](const std::string& name, std::size_t behind, std::uint32_t v) {
+    Bytes bad = good;
+    const std::size_t at = text.find(name) + name.size() + 1 + behind;
+    for (std::size_t i = 0; i < 4; ++i) bad[at + i] = std::uint8_t(v >> (8 * i));
+    return bad;
+  };
+  // Name, 0, "box2i", 0, size, then the box.
+  EXPECT_THROW(read_exr(with("dataWindow", 6 + 4 + 8, 1000000), path), Error) << "a million columns";
+  EXPECT_THROW(read_exr(with("dataWindow", 6, 0x7fffffff), path), Error) << "an attribute of 2 GB";
+  EXPECT_NO_THROW(read_exr(with("dataWindow", 6 + 4 + 8, 3), path)) << "as it was";
+}
+
 TEST(Image, PngReturnsColoursAndRefusesDamage) {
   Image image = make_image(3, 1, {"R", "G", "B"});
   image.values = {0, .5f, 1, 2, -1, .25f, NAN, 0, 0};
@@ -49,6 +66,48 @@ TEST(Image, PngReturnsColoursAndRefusesDamage) {
   const Bytes bytes = read_file(path, 1 << 20);
   EXPECT_THROW(read_png(ByteView(bytes).first(40), path), Error);
   std::filesystem::remove(path);
+}
+
+// Pixel 0 of a picture of one pixel whose channels hold 1, 2, 3, ...
+std::vector<float> shown(const std::vector<std::string>& channels) {
+  Image image = make_image(1, 1, channels);
+  for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = float(i + 1);
+  return colours_of(image, "a.exr").values;
+}
+
+std::string refused(const std::vector<std::string>& channels) {
+  try {
+    shown(channels);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(Image, ColoursAreFoundByName) {
+  using Values = std::vector<float>;
+  EXPECT_EQ(shown({"B", "G", "R"}), (Values{3, 2, 1}));
+  EXPECT_EQ(shown({"A", "B", "G", "R"}), (Values{4, 3, 2}));
+  EXPECT_EQ(shown({"b", "g", "r"}), (Values{3, 2, 1}));
+  EXPECT_EQ(shown({"A", "Y"}), (Values{2}));
+  EXPECT_EQ(shown({"Y", "Z"}), (Values{1})) << "luminance and depth";
+  EXPECT_EQ(shown({"B", "G", "R", "Z", "stderr.B", "stderr.G", "stderr.R"}), (Values{3, 2, 1}));
+  EXPECT_EQ(shown({"diffuse.B", "diffuse.G", "diffuse.R"}), (Values{3, 2, 1}));
+  EXPECT_NE(refused({"B", "R"}).find("no channel G"), std::string::npos);
+  EXPECT_NE(refused({"R"}).find("no channel G"), std::string::npos);
+  EXPECT_NE(refused({"A"}).find("no channels R, G and B"), std::string::npos);
+  EXPECT_NE(refused({"a.B", "a.G", "a.R", "b.Y"}).find("several layers"), std::string::npos);
+  EXPECT_NE(refused({"BY", "RY", "Y"}).find("chroma"), std::string::npos);
+}
+
+TEST(Image, EncodedValuesBecomeLightUnlessTheyAreRaw) {
+  Image image = make_image(1, 1, {"R", "G", "B"});
+  image.values = {128 / 255.f, 0, 1}, image.encoded = true;
+  EXPECT_NEAR(colours_of(image, "a.png").values[0], .2159, 1e-4);
+  EXPECT_FALSE(colours_of(image, "a.png").encoded);
+  EXPECT_EQ(colours_of(image, "a.png", true).values, image.values);
+  image.values[1] = NAN;
+  EXPECT_THROW(colours_of(image, "a.png"), Error);
 }
 
 Bytes hdr(const std::string& size, std::initializer_list<int> pixels) {

@@ -94,7 +94,7 @@ TEST(MeshFiles, ImpossibleCountsAndCornersAreErrors) {
   EXPECT_EQ(end_of("ply", with("4 0 1 2 3", "4 0 1 2 4")), End::error);
   EXPECT_EQ(end_of("ply", with("4 0 1 2 3", "4 0 1 2 -1")), End::error);
   EXPECT_EQ(end_of("ply", with("-1 -1 0", "nan -1 0")), End::error);
-  EXPECT_EQ(end_of("ply", with("4 0 1 2 3", "2 0 1")), End::picture) << "a face without area";
+  EXPECT_EQ(end_of("ply", with("4 0 1 2 3", "2 0 1")), End::error) << "no triangle at all";
   EXPECT_EQ(end_of("obj", "f 1 2 3\n"), End::error);
 }
 

@@ -18,6 +18,7 @@ struct Image {
   std::vector<std::string> channels;
   std::vector<float> values;
   std::map<std::string, std::string> metadata;
+  bool encoded = false;  // values follow sRGB's curve, as those of 8 and 16 bits do
 
   std::size_t index(int x, int y) const {
     return (std::size_t(y) * std::size_t(width) + std::size_t(x)) * channels.size();
@@ -29,11 +30,20 @@ struct Image {
 // Zeros. Throws Error unless the sizes are positive and at most 2^28 values are asked for.
 Image make_image(int width, int height, std::vector<std::string> channels);
 
-// .hdr (RGBE), .exr or .png, told by the content. PNG values are in [0, 1], still in sRGB. Throws Error.
+// .hdr (RGBE), .exr or .png, told by the content: every channel that the file has, under its own name (of a
+// PNG Y, YA, RGB or RGBA). PNG values are in [0, 1], `encoded`. EXR channels R, G, B come out with the
+// primaries of sRGB, whatever the file's are. Throws Error.
 Image read_image(const std::string& path);
 Image read_hdr(ByteView bytes, const std::string& where);
 Image read_exr(ByteView bytes, const std::string& where);
 Image read_png(ByteView bytes, const std::string& where);
+
+// What a picture shows: Y alone, or R, G, B, by the channels' names and never by their order; without alpha,
+// in linear light. `raw`: values as the file has them. The layer without a name, or the only one. Throws
+// Error where the names leave it open, or where a value is not finite.
+Image colours_of(const Image& picture, const std::string& where, bool raw = false);
+// The same, with three equal channels for a grey picture.
+Image rgb_of(const Image& picture, const std::string& where);
 
 // 32-bit floats with every channel and the metadata, atomically.
 void write_exr(const std::string& path, const Image& image);

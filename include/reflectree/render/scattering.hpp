@@ -60,6 +60,8 @@ class Scattering {
   // functions are not reciprocal. By default drawn as `sample` would, were wi the viewer's direction.
   virtual std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const;
   virtual Lobes lobes() const { return Lobes::finite; }
+  // Whether light goes on behind the surface.
+  virtual bool transmits() const { return false; }
   bool only_delta() const { return lobes() == Lobes::delta; }
   // False for a method without a density: lights are left to its own directions.
   virtual bool has_pdf() const { return true; }
@@ -75,7 +77,8 @@ struct Roughness {
 ScatteringPtr diffuse(Texture reflectance);
 // eta = k = 0: a mirror that reflects all.
 ScatteringPtr conductor(Rgb eta, Rgb k, Texture specular);
-ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular);
+// `alpha`: a grey picture in place of the number, if there is one.
+ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha = {});
 // `eta`: inside over outside. `nonlinear`: colour shifts of the light that goes round inside.
 struct Plastic {
   float eta = 1.49f / 1.000277f;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ using Point = Vec3<float>;
 struct Surface {
   ScatteringPtr scattering;
   Rgb radiance;  // emitted to the side of the normal
+  // How triangles get u and v: from their vertices, or as the shares of the second and third corner; of a
+  // mesh that is turned inside out they are the third and second.
+  enum class Mapping : std::uint8_t { vertices, corners, swapped_corners } mapping = Mapping::vertices;
 };
 
 // `normal`: for shading, interpolated; zero: the triangle's own, (p1 - p0) x (p2 - p0).
@@ -60,12 +64,16 @@ struct DirectionalLight {
 struct Camera {
   Point origin, left, up, forward;  // an orthonormal basis
   float tan_x = 1, tan_y = 1;       // half the picture's width and height at distance 1
+  // What the picture shows lies so much to the right and below, in sizes of it.
+  float shift_x = 0, shift_y = 0;
+  float near = 0, far = std::numeric_limits<float>::infinity();  // along `forward`; the rest is not seen
 };
 
 // What weighs a camera ray by its place about a pixel's centre.
 struct Filter {
   enum class Kind { box, tent, gaussian } kind = Kind::box;
-  float width = .5f;  // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
+  float width = .5f;   // half the box, half the tent's base, the Gaussian's standard deviation; in pixels
+  bool beyond = true;  // the film's border; otherwise nothing from there counts, as in Mitsuba by default
 };
 
 // How light is to be computed.

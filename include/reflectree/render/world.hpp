@@ -51,6 +51,11 @@ struct World {
 
   // How far from a surface rays start: well above the rounding of its coordinates.
   float near(Point at) const { return 5e-5f * max(max(max(abs(at.x), abs(at.y)), abs(at.z)), .01f * extent); }
+  // Between the camera's clips.
+  Ray camera_ray(Point origin, Direction direction) const {
+    const float cosine = dot(direction, scene.camera.forward);
+    return {origin, direction, scene.camera.near / cosine, scene.camera.far / cosine};
+  }
   // Stops short of what it leads to.
   Ray shadow_ray(Point at, Direction direction, float distance) const {
     const float start = near(at);

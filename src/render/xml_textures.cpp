@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "xml_materials.hpp"
+
+namespace reflectree::render {
+
+namespace {
+
+// ITU-R BT.709, with Mitsuba's digits.
+float luminance(Rgb c) { return .212671f * c.r + .715160f * c.g + .072169f * c.b; }
+
+}  // namespace
+
+// The part of a transform that turns (u, v): Mitsuba leaves out the third row and column.
+std::array<float, 6> MaterialReader::to_uv(Node t) const {
+  const Matrix m = xml_.transform(XmlReader::named(t, "to_uv"));
+  return {float(m[0][0]), float(m[0][1]), float(m[0][3]), float(m[1][0]), float(m[1][1]), float(m[1][3])};
+}
+
+// A picture from 8 or 16 bits is in sRGB unless it is `raw`.
+Texture MaterialReader::bitmap(Node t) const {
+  using Wrap = Texture::Wrap;
+  xml_.only(t, {"filename", "filter_type", "wrap_mode", "raw", "to_uv"});
+  Texture made;
+  const std::string wrap = xml_.word(t, "wrap_mode", "repeat"),
+                    filter = xml_.word(t, "filter_type", "bilinear");
+  if (wrap != "repeat" && wrap != "mirror" && wrap != "clamp")
+    xml_.fail(t, "no wrap_mode '" + wrap + "'", "use repeat, mirror or clamp");
+  if (filter != "bilinear" && filter != "nearest")
+    xml_.fail(t, "no filter_type '" + filter + "'", "use bilinear or nearest");
+  made.wrap = wrap == "repeat" ? Wrap::repeat : wrap == "mirror" ? Wrap::mirror : Wrap::clamp;
+  made.nearest = filter == "nearest";
+  made.to_uv = to_uv(t);
+  const std::string file = xml_.file(t);
+  const bool raw = xml_.flag(t, "raw", false);
+  xml_.placed(t,
+              [&] { made.picture = std::make_shared<const Image>(colours_of(read_image(file), file, raw)); });
+  return made;
+}
+
+// Squares of half a unit: a picture of four texels, repeated.
+Texture MaterialReader::checkerboard(Node t) const {
+  xml_.only(t, {"color0", "color1", "to_uv"});
+  const Rgb a = xml_.colour(t, "color0", {.4f, .4f, .4f}, ColourOf::reflectance),
+            b = xml_.colour(t, "color1", {.2f, .2f, .2f}, ColourOf::reflectance);
+  Image squares = make_image(2, 2, {"R", "G", "B"});
+  squares.values = {a.r, a.g, a.b, b.r, b.g, b.b, b.r, b.g, b.b, a.r, a.g, a.b};
+  Texture made;
+  made.picture = std::make_shared<const Image>(std::move(squares)), made.nearest = true,
+  made.to_uv = to_uv(t);
+  return made;
+}
+
+Texture MaterialReader::texture(Node n, const char* name, Rgb otherwise) {
+  const Node found = XmlReader::named(n, name), t = found ? xml_.resolve(found) : found;
+  if (t == found && (!t || std::string_view(t.name()) != "texture")) {
+    Texture one;
+    one.colour = xml_.colour(n, name, otherwise, ColourOf::reflectance);
+    return one;
+  }
+  if (std::string_view(t.name()) != "texture")
+    xml_.fail(found, "'" + std::string(name) + "' refers to a <" + t.name() + ">", "refer to a texture");
+  if (XmlReader::type(t) == "bitmap") return bitmap(t);
+  if (XmlReader::type(t) == "checkerboard") return checkerboard(t);
+  xml_.unknown(t);
+}
+
+Texture MaterialReader::number(Node n, const char* name, double otherwise) {
+  const Node c = XmlReader::named(n, name);
+  const std::string_view tag = c.name();
+  Texture t;
+  if (tag != "texture" && tag != "ref" && tag != "rgb" && tag != "spectrum") {
+    t.colour = to_rgb(float(xml_.property(n, name, otherwise)));
+    return t;
+  }
+  t = texture(n, name, {});
+  const bool squares =
+      tag != "rgb" && tag != "spectrum" && XmlReader::type(xml_.resolve(c)) == "checkerboard";
+  const auto mean = [](Rgb colour) { return (colour.r + colour.g + colour.b) / 3; };
+  if (!t.picture) {
+    t.colour = to_rgb(mean(t.colour));
+    return t;
+  }
+  Image grey = make_image(t.picture->width, t.picture->height, {"Y"});
+  const std::size_t channels = t.picture->channels.size();
+  for (std::size_t i = 0; i < grey.values.size(); ++i) {
+    const float* v = t.picture->values.data() + i * channels;
+    grey.values[i] = channels == 1 ? v[0]
+                     : squares     ? mean({v[0], v[1], v[2]})
+                                   : luminance({v[0], v[1], v[2]});
+  }
+  // Asked for a number, Mitsuba's checkerboard has its two colours exchanged.
+  if (squares) std::swap(grey.values[0], grey.values[1]), std::swap(grey.values[2], grey.values[3]);
+  t.picture = std::make_shared<const Image>(std::move(grey));
+  return t;
+}
+
+}  // namespace reflectree::render
