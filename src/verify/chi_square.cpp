@@ -198,6 +198,21 @@ CheckResult check_mean_weight(const Tally& tally, const Bins& bins, const ChiSqu
   return result;
 }
 
+CheckResult check_together(const std::string& name, std::span<const double> p_values,
+                           const ChiSquareOptions& options) {
+  double sum = 0;
+  for (const double p : p_values) sum += normal_upper_quantile(std::clamp(p, 1e-300, 1 - 1e-15));
+  CheckResult result;
+  result.name = name;
+  result.statistic = p_values.empty() ? 0 : sum / std::sqrt(double(p_values.size()));
+  const double level = sidak(options.family_significance, options.tests);
+  result.threshold = normal_upper_quantile(level);
+  result.p_value = 0.5 * std::erfc(result.statistic / std::sqrt(2.));
+  result.passed = result.statistic <= result.threshold;
+  result.detail = std::to_string(p_values.size()) + " directions wo together, in standard deviations";
+  return result;
+}
+
 double relative_variance(const Tally& tally) {
   double sum = 0, sum2 = 0;
   for (std::size_t i = 0; i < tally.weight.size(); ++i) sum += tally.weight[i], sum2 += tally.weight2[i];

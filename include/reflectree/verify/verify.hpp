@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every check of this room on one sampler, in one call; `reflectree verify` is this call and prints its
+// report.
+//
+//   const auto report = reflectree::verify(my_brdf);     // builds a sampler and judges it
+//   const auto report = reflectree::verify(sampler);     // judges one that is built
+//   if (!report.all_passed()) for (const auto& check : report.checks) puts(to_line(check).c_str());
+//
+// What is drawn is judged by what f is: f is evaluated in the caller's frame, at random azimuths, integrated
+// by a cubature that shares no code with the builder, its target reduced by the referee's own formula. The
+// family of all statistical tests errs once in 1 / family_significance sound runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reflectree/verify/result.hpp"
+#include "reflectree/verify/suspect.hpp"
+
+namespace reflectree {
+
+struct VerifyFigure {
+  std::string name, where;
+  double value = 0;
+};
+
+struct VerifyReport {
+  std::vector<CheckResult> checks;
+  std::vector<VerifyFigure> figures;  // no verdicts: reciprocity, variance, ...
+  std::vector<std::string> notes;     // what the build said about itself
+  bool all_passed() const { return reflectree::all_passed(checks); }
+};
+
+struct VerifyOptions {
+  double effort = 1;  // multiplies draws; 1 takes some 20 s of two cores where f is quick
+  std::uint64_t seed = 1;
+  double family_significance = 1e-5;
+  std::vector<double> theta_o_deg{0, 30, 60, 80, 89};  // judged by chi-square, at random azimuths,
+  int random_elevations = 3;                           // and so many more, anywhere
+  std::uint64_t samples = 400'000;    // for each of them, by the first way of each mode; half by any other
+  std::uint64_t trials = 10'000'000;  // in search of overshoots
+  int albedo_directions = 80;         // compared with cubature: nodes, middles, anywhere
+  // Called as results come.
+  std::function<void(const CheckResult&)> on_check = [](const CheckResult&) {};
+  std::function<void(const VerifyFigure&)> on_figure = [](const VerifyFigure&) {};
+};
+
+// The judges. Ways and densities may be wrapped beforehand, to see a fault caught.
+VerifyReport verify(const Suspect& suspect, const VerifyOptions& options = {}, const Host& host = {});
+
+// data: the canonical form that the sampler was made from; without it nothing can be said about packing, and
+// bounds are judged by trials alone.
+template <Brdf F>
+VerifyReport verify(const Sampler<F>& sampler, const SamplerData* data = nullptr,
+                    const VerifyOptions& options = {}, const Host& host = {}) {
+  return verify(suspect(sampler, AnyBrdf(sampler.exact.brdf()), data), options, host);
+}
+template <Brdf F>
+VerifyReport verify(const Sampler<F>& sampler, const VerifyOptions& options, const Host& host = {}) {
+  return verify(sampler, nullptr, options, host);
+}
+template <Brdf F>
+VerifyReport verify(const F& f, const VerifyOptions& options = {}, const BuildOptions& build_options = {},
+                    const Host& host = {}) {
+  const SamplerData data = build(AnyBrdf(f), build_options, host);
+  const auto sampler = make_sampler(f, data);
+  return verify(sampler, &data, options, host);
+}
+
+}  // namespace reflectree

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elevations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reflectree::detail {
+namespace {
+
+double any_azimuth(Pcg32& u) { return 2 * pi_v<double> * to_unit_double(u()); }
+
+}  // namespace
+
+Direction viewer(double cos_theta, double phi) {
+  const double s = std::sqrt(std::max(1 - cos_theta * cos_theta, 0.));
+  return {float(s * std::cos(phi)), float(s * std::sin(phi)), float(cos_theta)};
+}
+
+Direction random_viewer(Pcg32& u) {
+  const double theta = 89.9 / 180 * pi_v<double> * to_unit_double(u());
+  return viewer(std::cos(theta), any_azimuth(u));
+}
+
+std::vector<Direction> stratified_viewers(std::size_t count, Pcg32& u) {
+  std::vector<Direction> viewers;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double theta = pi_v<double> / 2 * (double(i) + to_unit_double(u())) / double(count);
+    viewers.push_back(viewer(std::max(std::cos(theta), 2 * double(min_cos_theta_o)), any_azimuth(u)));
+  }
+  return viewers;
+}
+
+std::vector<Direction> border_viewers(const PackedSampler& packed, std::size_t count, Pcg32& u) {
+  std::vector<Direction> viewers;
+  for (const PackedForest* forest : {&packed.exact, &packed.one_shot}) {
+    const std::vector<float>& all = forest->lookup.borders();
+    // Without the ends: the horizon, and what closes the list above 1.
+    std::vector<float> borders(all.begin() + 1, all.end() - 1);
+    while (borders.size() > count) {
+      borders.erase(borders.begin() + std::ptrdiff_t(std::size_t(u()) % borders.size()));
+    }
+    for (const float c : borders) {
+      const double away = 4e-7 * double(c);
+      viewers.push_back(viewer(double(c) - away, any_azimuth(u)));
+      viewers.push_back(viewer(std::min(double(c) + away, 1.), any_azimuth(u)));
+    }
+  }
+  return viewers;
+}
+
+}  // namespace reflectree::detail
