@@ -2,7 +2,7 @@
 // The faults that verify can plant in what it looks at.
 #pragma once
 
-#include "reflectree/verify/suspect.hpp"
+#include "reflectree/verify/ways.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

@@ -8,6 +8,8 @@
 
 #include "elevations.hpp"
 #include "parallel.hpp"
+#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/incidence.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree {

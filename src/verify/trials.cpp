@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 
 #include "elevations.hpp"
 #include "parallel.hpp"
+#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/domain_map.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/verify/verify.hpp"
+#include "reflectree/verify/verify_suspect.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "elevations.hpp"
 #include "parallel.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
 #include "reflectree/verify/agreement.hpp"
 #include "reflectree/verify/furnace.hpp"
 #include "reflectree/verify/leaf_places.hpp"
@@ -238,21 +239,33 @@ class Trial {
   }
 
   // Nodes of the table and middles between two, where a linear interpolation errs most: all where there are
-  // few, else random ones, both of each kind.
+  // few. Else half of them about the nodes that bend the table most, where one that is wrong stands out, and
+  // the rest at random.
   std::vector<double> table_places(std::size_t count) {
-    const std::vector<float>& nodes = s_.packed->albedo_lookup.borders();
-    std::vector<double> places;
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-      const double lower = double(nodes[i]), upper = i + 2 < nodes.size() ? double(nodes[i + 1]) : 1.;
-      places.push_back(0.5 * (lower + upper));
-      places.push_back(lower);
+    const std::vector<float>& borders = s_.packed->albedo_lookup.borders();
+    std::vector<double> nodes(borders.begin(), borders.end());
+    nodes.back() = 1;
+    std::vector<std::pair<double, double>> places;  // bend, place
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      double bend = 0;
+      if (i > 0 && i + 1 < nodes.size()) {
+        const auto a = [&](std::size_t k) { return double(s_.packed->albedo_at(float(nodes[k]))); };
+        const double t = (nodes[i] - nodes[i - 1]) / (nodes[i + 1] - nodes[i - 1]);
+        bend = std::abs(a(i) - (1 - t) * a(i - 1) - t * a(i + 1)) / std::max(a(i), 1e-30);
+      }
+      places.emplace_back(bend, nodes[i]);
+      if (i + 1 < nodes.size()) places.emplace_back(bend, 0.5 * (nodes[i] + nodes[i + 1]));
     }
+    std::stable_sort(places.begin(), places.end(),
+                     [](const auto& x, const auto& y) { return x.first > y.first; });
     Pcg32 u = detail::part_generator(o_.seed, 10);
-    for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    for (std::size_t i = count / 2; i + 1 < places.size(); ++i) {
       std::swap(places[i], places[i + std::size_t(u()) % (places.size() - i)]);
     }
     if (places.size() > count) places.resize(count);
-    return places;
+    std::vector<double> cosines;
+    for (const auto& place : places) cosines.push_back(place.second);
+    return cosines;
   }
 
   void once() {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "reflectree/brdf/models/plastic.hpp"
-#include "reflectree/verify/suspect.hpp"
+#include "reflectree/verify/ways.hpp"
 
 namespace reflectree {
 

@@ -2,6 +2,8 @@
 // Planted faults: the twins that every check must reject. Each wraps a sampler and spoils one thing.
 #pragma once
 
+#include "reflectree/sampler/sampler_data.hpp"
+#include "reflectree/verify/erased.hpp"
 #include "reflectree/verify/suspect.hpp"
 
 namespace reflectree {

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sampler before its judges: every way in, every density, what it is packed from; its type erased.
+// A sampler before its judges: every way in, every density, what it is packed from; its type erased. Made by
+// suspect() in ways.hpp.
 #pragma once
 
-#include <memory>
+#include <optional>
+#include <vector>
 
-#include "reflectree/verify/ways.hpp"
+#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/target.hpp"
+#include "reflectree/verify/way_in.hpp"
 
 namespace reflectree {
+
+struct PackedSampler;
+struct SamplerData;
 
 struct Suspect {
   AnyBrdf f;
@@ -26,32 +33,5 @@ struct Suspect {
   std::size_t channels() const { return std::size_t(f.channels()); }
   bool concurrent() const { return f.traits().concurrent; }
 };
-
-// Borrows sampler and data. f: the sampler's own function.
-template <Brdf F>
-Suspect suspect(const Sampler<F>& sampler, AnyBrdf f, const SamplerData* data = nullptr) {
-  const std::size_t channels = std::size_t(f.channels());
-  const PackedSampler& packed = sampler.exact.packed();
-  Suspect s{std::move(f), packed.target, ways_into(sampler.exact, channels), {}, {}, {}, {}, {}, {}, {},
-            &packed,      data};
-  for (WayIn& way : ways_into(sampler.one_shot, channels)) s.ways.push_back(std::move(way));
-  s.exact_pdf = [&sampler](Direction wo, Direction wi) { return sampler.exact.pdf(wo, wi); };
-  s.one_shot_pdf = [&sampler](Direction wo, Direction wi) { return sampler.one_shot.pdf(wo, wi); };
-  s.albedo = [&sampler](Direction wo) { return double(sampler.exact.albedo(wo)); };
-  s.point = [&sampler](Direction wo, double u1, double u2) -> std::optional<Direction> {
-    if (const auto drawn = sampler.one_shot.sample(wo, u1, u2)) return drawn->wi;
-    return std::nullopt;
-  };
-  s.invert = [&sampler](Direction wo, Direction wi) { return sampler.one_shot.invert(wo, wi); };
-  s.propose = [&sampler](Direction wo, Pcg32& u) -> std::optional<Direction> {
-    if (const auto drawn = sampler.one_shot.propose(wo, u)) return drawn->wi;
-    return std::nullopt;
-  };
-  s.once = [&sampler, channels](Direction wo, Pcg32& u, std::span<float> weights) {
-    const auto drawn = sampler.exact.sample_once(wo, u);
-    for (std::size_t c = 0; c < channels; ++c) weights[c] = drawn ? channel(drawn->weight, int(c)) : 0.f;
-  };
-  return s;
-}
 
 }  // namespace reflectree

@@ -1,53 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every way into a sampler, its type erased, so that each can be judged alike: one direction at a time, many
-// at once, batches in lanes, from bits and from points of the square.
+// Erases the type of a sampler: every way into it, so that each can be judged alike.
 #pragma once
 
-#include <array>
-#include <functional>
 #include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/simd/sample_batch.hpp"
-#include "reflectree/verify/attack.hpp"
-#include "reflectree/verify/erased.hpp"
+#include "reflectree/verify/suspect.hpp"
 
 namespace reflectree {
-
-struct DrawnAt {
-  Direction wi;
-  float pdf = 0;
-  bool drawn = false;      // false: "no sample"
-  std::uint16_t lane = 0;  // place in a call of batch_lanes directions; no_lane in any other
-};
-inline constexpr std::size_t batch_lanes = 64;
-inline constexpr std::uint16_t no_lane = batch_lanes;
-
-// What a caller may see of exact mode's trials: acceptance by lane, overshoots, and where it gives up.
-struct TrialLog {
-  struct Lane {
-    std::uint64_t trials = 0, accepted = 0;
-    double expected = 0, variance = 0;  // of `accepted`: sums of p and p (1 - p), p = min(1, T / (a M))
-  };
-  std::array<Lane, batch_lanes + 1> lane;  // the last: trials whose lane is not known
-  OvershootSums sums;                      // of T / (a M)
-  std::uint64_t exhausted = 0;
-  void add(const TrialLog& other);
-};
-
-// out.size() directions for wo; weights holds out.size() * channels values.
-struct WayIn {
-  std::string name;
-  bool exact = true;  // density t cos_i / a; else that of one-shot mode's pdf()
-  std::function<void(Direction wo, Pcg32& u, std::span<DrawnAt> out, std::span<float> weights)> draw;
-  // Exact mode: n directions, with the trials that they took.
-  std::function<void(Direction wo, Pcg32& u, std::size_t n, TrialLog& log)> watch;
-  // Exact mode: the trials after which it gives up where every acceptance is refused; 0: it did not give up.
-  std::function<std::uint64_t(Direction wo)> give_up;
-};
 
 namespace detail {
 
@@ -234,6 +196,33 @@ std::vector<WayIn> ways_into(const OneShotSampler<F>& s, std::size_t channels) {
     });
   };
   return ways;
+}
+
+// Borrows sampler and data. f: the sampler's own function.
+template <Brdf F>
+Suspect suspect(const Sampler<F>& sampler, AnyBrdf f, const SamplerData* data = nullptr) {
+  const std::size_t channels = std::size_t(f.channels());
+  const PackedSampler& packed = sampler.exact.packed();
+  Suspect s{std::move(f), packed.target, ways_into(sampler.exact, channels), {}, {}, {}, {}, {}, {}, {},
+            &packed,      data};
+  for (WayIn& way : ways_into(sampler.one_shot, channels)) s.ways.push_back(std::move(way));
+  s.exact_pdf = [&sampler](Direction wo, Direction wi) { return sampler.exact.pdf(wo, wi); };
+  s.one_shot_pdf = [&sampler](Direction wo, Direction wi) { return sampler.one_shot.pdf(wo, wi); };
+  s.albedo = [&sampler](Direction wo) { return double(sampler.exact.albedo(wo)); };
+  s.point = [&sampler](Direction wo, double u1, double u2) -> std::optional<Direction> {
+    if (const auto drawn = sampler.one_shot.sample(wo, u1, u2)) return drawn->wi;
+    return std::nullopt;
+  };
+  s.invert = [&sampler](Direction wo, Direction wi) { return sampler.one_shot.invert(wo, wi); };
+  s.propose = [&sampler](Direction wo, Pcg32& u) -> std::optional<Direction> {
+    if (const auto drawn = sampler.one_shot.propose(wo, u)) return drawn->wi;
+    return std::nullopt;
+  };
+  s.once = [&sampler, channels](Direction wo, Pcg32& u, std::span<float> weights) {
+    const auto drawn = sampler.exact.sample_once(wo, u);
+    for (std::size_t c = 0; c < channels; ++c) weights[c] = drawn ? channel(drawn->weight, int(c)) : 0.f;
+  };
+  return s;
 }
 
 }  // namespace reflectree
