@@ -38,23 +38,29 @@ CheckResult check_acceptance(const std::string& way, const TrialLog& log, const 
   result.name = "acceptance";
   result.way = way;
   result.threshold =
-      normal_two_sided_quantile(sidak(options.family_significance, options.tests * std::max(lanes, 1)));
+      normal_two_sided_quantile(sidak(options.family_significance, options.tests * 2 * std::max(lanes, 1)));
   std::size_t worst = 0;
+  bool dependent = false;
   for (std::size_t l = 0; l < log.lane.size(); ++l) {
     const TrialLog::Lane& lane = log.lane[l];
     // Ratios are rounded to float: some 1e-7 of the trials, and single ones.
     const double difference =
         std::abs(double(lane.accepted) - lane.expected) - 3 - 1e-6 * double(lane.trials);
     const double z = difference > 0 ? difference / std::sqrt(lane.variance + 1) : 0;
-    if (z > result.statistic) result.statistic = z, worst = l;
+    const double together = std::abs(lane.together) / std::sqrt(lane.together_variance + 25);
+    if (std::max(z, together) > result.statistic) {
+      result.statistic = std::max(z, together), worst = l, dependent = together > z;
+    }
   }
   result.passed = result.statistic <= result.threshold && lanes > 0;
-  char buffer[200];
+  char buffer[240];
   const TrialLog::Lane& lane = log.lane[worst];
-  std::snprintf(buffer, sizeof buffer,
-                "%s, standard deviations; worst of %d lanes: %llu of %llu accepted where %.1f are expected",
-                way.c_str(), lanes, static_cast<unsigned long long>(lane.accepted),
-                static_cast<unsigned long long>(lane.trials), lane.expected);
+  std::snprintf(
+      buffer, sizeof buffer,
+      "%s, standard deviations; worst of %d lanes: %zu, %llu of %llu accepted where %.1f are expected%s",
+      way.c_str(), lanes, worst, static_cast<unsigned long long>(lane.accepted),
+      static_cast<unsigned long long>(lane.trials), lane.expected,
+      dependent ? "; it depends on the lane before" : "");
   result.detail = buffer;
   return result;
 }

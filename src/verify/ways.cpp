@@ -11,6 +11,8 @@ void TrialLog::add(const TrialLog& other) {
     lane[l].accepted += other.lane[l].accepted;
     lane[l].expected += other.lane[l].expected;
     lane[l].variance += other.lane[l].variance;
+    lane[l].together += other.lane[l].together;
+    lane[l].together_variance += other.lane[l].together_variance;
   }
   sums.add(other.sums);
   exhausted += other.exhausted;
@@ -26,6 +28,10 @@ void LaneWatcher::trial(bool accepted, float ratio, float majorant) {
   lane.accepted += accepted;
   lane.expected += p;
   lane.variance += p * (1 - p);
+  const double miss = double(accepted) - p, variance = p * (1 - p);
+  lane.together += miss * last_miss_;
+  lane.together_variance += variance * last_variance_;
+  last_miss_ = miss, last_variance_ = variance;
   log_.sums.add(r);
 }
 

@@ -38,6 +38,23 @@ TEST(TrialsTwin, ALaneThatAlwaysAccepts) {
   EXPECT_FALSE(check_acceptance(way.name, log, options()).passed);
 }
 
+TEST(TrialsTwin, NeighboursThatShareTheirUniform) {
+  const Suspect s = built().suspect();
+  TrialLog log;
+  Pcg32 u(7);
+  for (int call = 0; call < 4000; ++call) {
+    detail::LaneWatcher watcher(log, true);
+    std::uint32_t shared = 0;
+    for (std::size_t k = 0; k < batch_lanes; ++k) {
+      if (k % 2 == 0) shared = u();
+      watcher.trial(to_unit_double(shared) < 0.8, 0.8f, 1);
+    }
+  }
+  const CheckResult dependent = check_acceptance("batch", log, options());
+  EXPECT_FALSE(dependent.passed) << to_line(dependent);
+  EXPECT_NE(dependent.detail.find("depends"), std::string::npos) << dependent.detail;
+}
+
 TEST(TrialsTwin, GivingUpEarly) {
   WayIn way = built().suspect().ways[0];
   way.give_up = [](Direction) { return std::uint64_t(8); };

@@ -13,7 +13,7 @@ TrialLog watch_trials(const Suspect& suspect, const WayIn& way, std::uint64_t di
                       const Host& host = {});
 
 // A trial is accepted with probability T / (a M), in every lane: accepted less the sum of these, in standard
-// deviations. The worst lane decides.
+// deviations; and whatever the lane before does: the sum of the products of both. The worst lane decides.
 CheckResult check_acceptance(const std::string& way, const TrialLog& log, const ChiSquareOptions& options);
 
 // Where every acceptance is refused, a draw ends after as many trials as are promised and not before, since

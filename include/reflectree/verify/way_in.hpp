@@ -26,6 +26,8 @@ struct TrialLog {
   struct Lane {
     std::uint64_t trials = 0, accepted = 0;
     double expected = 0, variance = 0;  // of `accepted`: sums of p and p (1 - p), p = min(1, T / (a M))
+    // With the lane before: sum of the products of what was accepted less what was expected, its variance.
+    double together = 0, together_variance = 0;
   };
   std::array<Lane, batch_lanes + 1> lane;  // the last: trials whose lane is not known
   OvershootSums sums;                      // of T / (a M)

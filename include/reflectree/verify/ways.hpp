@@ -33,6 +33,7 @@ class LaneWatcher {
  private:
   TrialLog& log_;
   std::size_t next_;
+  double last_miss_ = 0, last_variance_ = 0;
 };
 
 template <class Value>
