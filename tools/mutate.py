@@ -10,10 +10,15 @@ second run is quick.
     tools/mutate.py                         every fault; the table to standard output
     tools/mutate.py --only eight-trials     one
     tools/mutate.py --write                 and the table to docs/results/mutations.md
+    tools/mutate.py --resume --write        the same, but only what the work folder has no result of
+
+Results are kept in the work folder; the table has those of the whole list. The first run asks verify_whole about
+the sources without a fault.
 
 Exit code 1 if a fault that is not declared equivalent was noticed by nobody, or one could not be planted.
 """
 import argparse
+import json
 import pathlib
 import re
 import shutil
@@ -162,21 +167,26 @@ def main():
     parser.add_argument("--only", nargs="*", help="names of faults")
     parser.add_argument("--tests", action="store_true", help="ask the test programs about every fault")
     parser.add_argument("--no-tests", action="store_true", help="ask verify alone")
+    parser.add_argument("--resume", action="store_true", help="leave out what has a result")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--write", action="store_true", help="write docs/results/mutations.md")
     options = parser.parse_args()
-    mutations = read_mutations(options.list)
+    all_mutations = mutations = read_mutations(options.list)
     if options.only:
         mutations = [m for m in mutations if m.name in options.only]
         if len(mutations) != len(set(options.only)):
             sys.exit("mutate: not every name is in the list")
+    kept = options.work / "results.json"
+    results = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    if options.resume:
+        mutations = [m for m in mutations if m.name not in results]
     workshop = Workshop(options.work.resolve(), options.jobs)
     workshop.prepare()
     names, seconds = workshop.noticed_by_verify()
     if names:
         sys.exit(f"mutate: the sources fail without a fault: {', '.join(names)}")
     print(f"without a fault: nothing, {seconds:.0f} s", flush=True)
-    rows, trouble = [], []
+    trouble = []
     for m in mutations:
         file = workshop.source / m.file
         sound = file.read_text(encoding="utf-8")
@@ -191,7 +201,8 @@ def main():
             test = ""
             if not options.no_tests and (options.tests or not names):
                 test = workshop.noticed_by_tests()
-            rows.append((m, names, seconds, test))
+            results[m.name] = [names, seconds, test]
+            kept.write_text(json.dumps(results, indent=1), encoding="utf-8")
             print(f"{m.name}: {', '.join(names) or 'nothing'} ({seconds:.0f} s){'; ' + test if test else ''}", flush=True)
             if not names and not test and not m.equivalent and not options.no_tests:
                 trouble.append(f"{m.name}: noticed by nobody")
@@ -200,6 +211,7 @@ def main():
             print(trouble[-1], flush=True)
         finally:
             file.write_text(sound, encoding="utf-8")
+    rows = [(m, *results[m.name]) for m in all_mutations if m.name in results]
     print("\n" + page(rows))
     if options.write:
         (ROOT / "docs" / "results" / "mutations.md").write_text(page(rows), encoding="utf-8")

@@ -7,6 +7,8 @@
 namespace reflectree::detail {
 namespace {
 
+constexpr double largest_theta = 89.9 / 180 * pi_v<double>;
+
 double any_azimuth(Pcg32& u) { return 2 * pi_v<double> * to_unit_double(u()); }
 
 }  // namespace
@@ -17,15 +19,15 @@ Direction viewer(double cos_theta, double phi) {
 }
 
 Direction random_viewer(Pcg32& u) {
-  const double theta = 89.9 / 180 * pi_v<double> * to_unit_double(u());
+  const double theta = largest_theta * to_unit_double(u());
   return viewer(std::cos(theta), any_azimuth(u));
 }
 
 std::vector<Direction> stratified_viewers(std::size_t count, Pcg32& u) {
   std::vector<Direction> viewers;
   for (std::size_t i = 0; i < count; ++i) {
-    const double theta = pi_v<double> / 2 * (double(i) + to_unit_double(u())) / double(count);
-    viewers.push_back(viewer(std::max(std::cos(theta), 2 * double(min_cos_theta_o)), any_azimuth(u)));
+    const double theta = largest_theta * (double(i) + to_unit_double(u())) / double(count);
+    viewers.push_back(viewer(std::cos(theta), any_azimuth(u)));
   }
   return viewers;
 }

@@ -14,7 +14,7 @@ Direction viewer(double cos_theta, double phi);
 // Any azimuth; theta_o uniform from 0 to 89.9 degrees.
 Direction random_viewer(Pcg32& u);
 
-// `count` elevations, one in each of as many equal strata of [0, 90) degrees, at any azimuth.
+// `count` elevations, one in each of as many equal strata of [0, 89.9) degrees, at any azimuth.
 std::vector<Direction> stratified_viewers(std::size_t count, Pcg32& u);
 
 // Either side of the borders of slabs, a few roundings away, at any azimuth; at most `count` borders of each

@@ -88,8 +88,9 @@ class Trial {
   std::vector<Direction> chosen_viewers() {
     Pcg32 u = detail::part_generator(o_.seed, 1);
     std::vector<Direction> viewers;
+    constexpr double lowest = 1.01 * double(min_cos_theta_o);  // below, no sample is promised
     for (const double theta : o_.theta_o_deg) {
-      viewers.push_back(detail::viewer(std::sin((90 - theta) * pi_v<double> / 180),
+      viewers.push_back(detail::viewer(std::max(std::sin((90 - theta) * pi_v<double> / 180), lowest),
                                        2 * pi_v<double> * to_unit_double(u())));
     }
     for (const Direction wo : detail::stratified_viewers(std::size_t(std::max(o_.random_elevations, 0)), u)) {
