@@ -12,8 +12,9 @@
 namespace reflectree {
 namespace {
 
-enum Kind { finite, pdf_agrees, weight_agrees, target, mode_agrees, kinds };
-constexpr const char* names[kinds] = {"finite", "pdf_agrees", "weight_agrees", "target", "mode_agrees"};
+enum Kind { finite, pdf_agrees, weight_agrees, support, target, mode_agrees, kinds };
+constexpr const char* names[kinds] = {"finite",  "pdf_agrees", "weight_agrees",
+                                      "support", "target",     "mode_agrees"};
 
 // At one viewer, by one way.
 struct Counts {
@@ -68,6 +69,10 @@ struct Judge {
              product <= f_cos[c].hi * (1 + options.tolerance) + slack;
     }
     counts.differs[weight_agrees] += !same;
+    // Below, 1 - x^2 - y^2 is rounding error: a map by way of the disk cannot know the direction.
+    if (d.wi.z > 5e-4f && t_cos.lo > 0) {
+      counts.differs[support] += !((way.exact ? s.one_shot_pdf : s.exact_pdf)(wo, d.wi) > 0);
+    }
     if (!way.exact) return;
     const double albedo = s.albedo(wo);
     counts.differs[target] +=

@@ -50,4 +50,34 @@ std::vector<Direction> border_viewers(const PackedSampler& packed, std::size_t c
   return viewers;
 }
 
+std::vector<double> table_places(const PackedSampler& packed, std::size_t count, Pcg32& u) {
+  const std::vector<float>& borders = packed.albedo_lookup.borders();
+  std::vector<double> nodes(borders.begin(), borders.end());
+  nodes.back() = 1;
+  struct Place {
+    double bend, cosine;
+  };
+  std::vector<Place> places;
+  const auto albedo = [&](std::size_t i) { return double(packed.albedo_at(float(nodes[i]))); };
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    double bend = 0;
+    if (i > 0 && i + 1 < nodes.size()) {
+      const double t = (nodes[i] - nodes[i - 1]) / (nodes[i + 1] - nodes[i - 1]);
+      const double line = (1 - t) * albedo(i - 1) + t * albedo(i + 1);
+      bend = std::abs(albedo(i) - line) / std::max(albedo(i), 1e-30);
+    }
+    places.push_back({bend, nodes[i]});
+    if (i + 1 < nodes.size()) places.push_back({bend, 0.5 * (nodes[i] + nodes[i + 1])});
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Place& a, const Place& b) { return a.bend > b.bend; });
+  for (std::size_t i = count / 2; i + 1 < places.size(); ++i) {
+    std::swap(places[i], places[i + std::size_t(u()) % (places.size() - i)]);
+  }
+  if (places.size() > count) places.resize(count);
+  std::vector<double> cosines;
+  for (const Place& p : places) cosines.push_back(p.cosine);
+  return cosines;
+}
+
 }  // namespace reflectree::detail

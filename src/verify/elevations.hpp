@@ -21,4 +21,9 @@ std::vector<Direction> stratified_viewers(std::size_t count, Pcg32& u);
 // partition, chosen at random where there are more.
 std::vector<Direction> border_viewers(const PackedSampler& packed, std::size_t count, Pcg32& u);
 
+// Cosines at which an albedo table is compared: nodes, and middles between two, where a linear interpolation
+// errs most. All where there are few; else half of `count` about the nodes that bend the table most, where
+// one that is wrong stands out, and the rest at random.
+std::vector<double> table_places(const PackedSampler& packed, std::size_t count, Pcg32& u);
+
 }  // namespace reflectree::detail

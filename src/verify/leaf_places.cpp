@@ -19,8 +19,10 @@ constexpr int cdf_bins = 64;
 constexpr std::size_t viewers_of_places = 8;  // the draws are shared among so many wo
 // Square coordinates of a direction in float are known to about this.
 constexpr double blur = 1.5e-7;
-// A leaf is resolved where the blur is below this share of it.
-constexpr double resolved = 2e-4;
+// A leaf is resolved where the blur is below this share of it: .6 % of the last of 64 bins changes sides, and
+// as much comes back where the density is the same there.
+constexpr double resolved = 1e-4;
+constexpr double largest_theta_o = pi_v<double> / 3;
 
 struct Place {
   std::size_t leaf;  // of the slab
@@ -54,14 +56,15 @@ std::optional<Place> locate(const PackedSampler& packed, Direction wo, Direction
     node += upper ? below : 1;
   }
   const PackedLeaf& l = forest.leaves[slab.first + leaf];
-  // The azimuth about the pole is known to the blur over the distance from it.
-  const double radius = std::sqrt(std::abs(double(p.y)));
-  const double distance =
-      packed.domain.kind == DomainKind::half_vector || packed.domain.kind == DomainKind::back_vector
-          ? std::abs(double(p.y))
-          : radius;
-  if (blur / width > resolved * distance || blur / length > resolved || double(wo.z) < 0.02)
-    return std::nullopt;
+  // Whether a leaf is resolved may depend on nothing but the leaf and wo: a choice by the place itself would
+  // bend what is counted. The half vector turns by the error of wi over 2 wo.wh, about cos theta_o where
+  // lobes are; the azimuth about the pole is known to the blur over the distance from it, y or, where y is
+  // sin^2 theta_i, its root.
+  const DomainKind kind = packed.domain.kind;
+  const bool about_half = kind == DomainKind::back_vector || kind == DomainKind::half_vector;
+  const double blurred = about_half ? blur / double(in.wo.z) : blur, middle = std::abs(y + 0.5 * length);
+  const double distance = about_half ? middle : std::sqrt(middle);
+  if (blurred / width > resolved * distance || blurred / length > resolved) return std::nullopt;
   return Place{leaf,
                std::clamp((double(p.x) - x) / width, 0., 1.),
                std::clamp((double(p.y) - y) / length, 0., 1.),
@@ -212,7 +215,11 @@ Part places_of(const Suspect& s, const DrawDirections& draw, std::uint64_t draws
                const Host& host) {
   constexpr std::uint64_t chunk = 1 << 13;
   Pcg32 choice = detail::part_generator(seed, 0);
-  const std::vector<Direction> viewers = detail::stratified_viewers(viewers_of_places, choice);
+  std::vector<Direction> viewers;
+  for (std::size_t i = 0; i < viewers_of_places; ++i) {
+    const double theta = largest_theta_o * (double(i) + to_unit_double(choice())) / double(viewers_of_places);
+    viewers.push_back(detail::viewer(std::cos(theta), 2 * pi_v<double> * to_unit_double(choice())));
+  }
   std::vector<Part> parts((draws + chunk - 1) / chunk);
   detail::for_each_index(host, s.concurrent(), parts.size(), [&](std::size_t c) {
     Pcg32 u = detail::part_generator(seed, c + 1);

@@ -36,9 +36,9 @@ std::string in_degrees(Direction wo) {
   return buffer;
 }
 
-class Trial {
+class Hearing {
  public:
-  Trial(const Suspect& suspect, const VerifyOptions& options, const Host& host)
+  Hearing(const Suspect& suspect, const VerifyOptions& options, const Host& host)
       : s_(suspect), o_(options), host_(host), f_(target_function(suspect.f, suspect.target)) {
     const int viewers = int(o_.theta_o_deg.size()) + std::max(o_.random_elevations, 0);
     chi_.family_significance = o_.family_significance;
@@ -134,10 +134,9 @@ class Trial {
       }
       add_way(way.exact ? check_counts(tally, bins, chi_) : check_counts(tally, density, chi_));
       add_way(check_weights(tally, bins, chi_));
-      add_way(
-          check_mean_weight(tally, bins, chi_, way.exact ? stated_error(wo) : 1e-4 + bins.worst_error / 3));
+      add_way(check_mean_weight(tally, bins, chi_, way.exact ? stated_error() : 1e-4 + bins.worst_error / 3));
       if (tally.channel.size() > 1) {
-        add_way(check_channel_weights(tally, references, chi_, way.exact ? stated_error(wo) : 1e-4));
+        add_way(check_channel_weights(tally, references, chi_, way.exact ? stated_error() : 1e-4));
       }
       if (*std::max_element(tally.lane_count.begin(), tally.lane_count.end()) > 0) {
         add_way(check_lanes(tally, chi_));
@@ -176,7 +175,7 @@ class Trial {
   }
 
   // Of exact mode's albedo, which is the mean of its weights; what floats can say at least.
-  double stated_error(Direction) const {
+  double stated_error() const {
     return std::max(s_.data ? double(s_.data->albedo.relative_error) : 1e-4, 1e-6) + 3e-5;
   }
 
@@ -233,40 +232,11 @@ class Trial {
     furnace.tolerance = std::max(s_.data ? double(s_.data->albedo.relative_error) : 1e-4, 1e-6);
     furnace.grazing_tolerance = 10 * furnace.tolerance;
     const auto count = std::size_t(scaled_count(std::uint64_t(std::max(o_.albedo_directions, 1)), 24));
-    furnace.cosines = table_places(count);
+    Pcg32 u = detail::part_generator(o_.seed, 10);
+    furnace.cosines = detail::table_places(*s_.packed, count, u);
     furnace.directions = int(count / 3);
     add(check_albedo_table(s_.albedo, f_, furnace, host_));
     inform("albedo_stated_error", furnace.tolerance);
-  }
-
-  // Nodes of the table and middles between two, where a linear interpolation errs most: all where there are
-  // few. Else half of them about the nodes that bend the table most, where one that is wrong stands out, and
-  // the rest at random.
-  std::vector<double> table_places(std::size_t count) {
-    const std::vector<float>& borders = s_.packed->albedo_lookup.borders();
-    std::vector<double> nodes(borders.begin(), borders.end());
-    nodes.back() = 1;
-    std::vector<std::pair<double, double>> places;  // bend, place
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      double bend = 0;
-      if (i > 0 && i + 1 < nodes.size()) {
-        const auto a = [&](std::size_t k) { return double(s_.packed->albedo_at(float(nodes[k]))); };
-        const double t = (nodes[i] - nodes[i - 1]) / (nodes[i + 1] - nodes[i - 1]);
-        bend = std::abs(a(i) - (1 - t) * a(i - 1) - t * a(i + 1)) / std::max(a(i), 1e-30);
-      }
-      places.emplace_back(bend, nodes[i]);
-      if (i + 1 < nodes.size()) places.emplace_back(bend, 0.5 * (nodes[i] + nodes[i + 1]));
-    }
-    std::stable_sort(places.begin(), places.end(),
-                     [](const auto& x, const auto& y) { return x.first > y.first; });
-    Pcg32 u = detail::part_generator(o_.seed, 10);
-    for (std::size_t i = count / 2; i + 1 < places.size(); ++i) {
-      std::swap(places[i], places[i + std::size_t(u()) % (places.size() - i)]);
-    }
-    if (places.size() > count) places.resize(count);
-    std::vector<double> cosines;
-    for (const auto& place : places) cosines.push_back(place.second);
-    return cosines;
   }
 
   void once() {
@@ -302,7 +272,7 @@ class Trial {
 }  // namespace
 
 VerifyReport verify(const Suspect& suspect, const VerifyOptions& options, const Host& host) {
-  return Trial(suspect, options, host).run();
+  return Hearing(suspect, options, host).run();
 }
 
 }  // namespace reflectree

@@ -19,7 +19,7 @@ class Verify(ProgramTest):
             names = {check["name"] for check in result["checks"]}
             self.assertLessEqual({"chi_square", "chi_square_pdf", "chi_square_weights", "mean_weight", "pdf_agrees",
                                   "weight_agrees", "alive", "finite", "pdf_integral", "albedo_table",
-                                  "sample_once", "overshoot_mass", "isotropy", "channel_weights", "lanes", "target",
+                                  "sample_once", "overshoot_mass", "isotropy", "channel_weights", "lanes", "target", "support",
                                   "mode_agrees", "round_trip", "leaf_slope_y", "leaf_shape", "leaf_distinct",
                                   "packed_albedo", "packed_slabs", "packed_leaves", "packed_choice",
                                   "packed_descent", "acceptance", "giving_up"}, names)

@@ -64,6 +64,14 @@ TEST(AgreementTwin, PdfWeightAndChannels) {
   EXPECT_TRUE(fails(broken, "finite"));
 }
 
+TEST(AgreementTwin, ADensityThatLostItsSupport) {
+  Suspect s = built().suspect();
+  s.one_shot_pdf = [inner = s.one_shot_pdf](Direction wo, Direction wi) {
+    return wi.z > 0.97f ? 0.f : inner(wo, wi);
+  };
+  EXPECT_TRUE(fails(judge(s), "support"));
+}
+
 // Between two elevations that a fixed list of five would visit.
 TEST(AgreementTwin, FivePerCentBetween41And46Degrees) {
   Suspect s = built().suspect();

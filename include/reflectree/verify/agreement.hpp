@@ -23,6 +23,7 @@ struct AgreementOptions {
 //   finite           every direction, pdf and weight
 //   pdf_agrees       pdf == pdf(wo, wi)
 //   weight_agrees    weight * pdf == f cos_i, channel by channel
+//   support          where f is not 0, neither is the other mode's density
 //   target           exact mode: the target of the weight is the albedo, whatever the direction
 //   mode_agrees      exact mode: pdf == t cos_i / albedo by the referee's own target
 // One result a kind for each way.
