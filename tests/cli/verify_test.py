@@ -4,7 +4,7 @@ import unittest
 
 from program import ProgramTest
 
-QUICK = ["--theta-o-deg", "45", "--random", "1", "--bound-trials", "1000000", "--samples", "1000000", "--effort", ".5"]
+QUICK = ["--theta-o-deg", "45", "--random", "1", "--bound-trials", "1000000", "--samples", "1000000"]
 
 
 class Verify(ProgramTest):
