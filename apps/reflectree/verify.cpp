@@ -76,8 +76,8 @@ void add_verify(CLI::App& app, Context& context, Run& run) {
       "Examples:\n"
       "  reflectree verify gold.rfl\n"
       "  reflectree verify ggx:alpha=0.1 --theta-o-deg 0,45,89 --plant bent\n"
-      "Checks that hold are summed up where they are many; -v shows each. 'open' is a check that so "
-      "many draws cannot decide: it fails nobody, and says what would.");
+      "Checks that hold are summed up where they are many; -v shows each. 'open' is a check that so many\n"
+      "draws cannot decide: it fails nobody, and says what would.");
   command->callback([&context, &run, o] { run = [&context, o] { return run_verify(context, *o); }; });
 }
 
