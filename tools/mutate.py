@@ -31,7 +31,7 @@ COPIED = ["CMakeLists.txt", "apps", "bench", "cmake", "examples", "include", "sr
 # In the order in which they are asked: the quickest to build first.
 TEST_PROGRAMS = ["test_sampler_data", "test_verify_ways", "test_sampler_sampling", "test_simd_batch", "test_sampler_build",
                  "test_sampler_faults"]
-VERIFY_SECONDS, TEST_SECONDS = 150, 600
+VERIFY_SECONDS, TEST_SECONDS = 200, 600
 
 
 class Mutation:
@@ -148,8 +148,9 @@ def page(rows):
     text = ["# Mutations", "",
             "Faults planted one by one in the sampler's sources, and who notices. Made by", "",
             "    tools/mutate.py --write", "",
-            "from the list `tools/mutations.txt`. `verify` is `verify()` at its default effort on a small material "
-            "(`tests/verify/whole.cpp`), itself a test of the suite; seconds are its own, beside other work. Where it "
+            "from the list `tools/mutations.txt`. `verify` is `verify()` at its default effort on a small material, matt "
+            "and, where that shows nothing, glossy (`tests/verify/whole.cpp`), itself a test of the suite; seconds are "
+            "its own, beside other work. Where it "
             "notices, the suite notices by that test; where it does not, the other test programs were asked.", "",
             f"{len(real)} faults, {len(rows) - len(real)} changes more that are declared equivalent. `verify` names "
             f"{len(by_verify)} of the faults, the slowest after {max([r[2] for r in by_verify] or [0]):.0f} s; noticed "
