@@ -61,9 +61,10 @@ std::optional<Place> locate(const PackedSampler& packed, Direction wo, Direction
   // lobes are; the azimuth about the pole is known to the blur over the distance from it, y or, where y is
   // sin^2 theta_i, its root.
   const DomainKind kind = packed.domain.kind;
-  const bool about_half = kind == DomainKind::back_vector || kind == DomainKind::half_vector;
-  const double blurred = about_half ? blur / double(in.wo.z) : blur, middle = std::abs(y + 0.5 * length);
-  const double distance = about_half ? middle : std::sqrt(middle);
+  const bool about_normal =
+      kind == DomainKind::projected_disk || kind == DomainKind::equal_area || kind == DomainKind::stretched;
+  const double blurred = about_normal ? blur : blur / double(in.wo.z), middle = std::abs(y + 0.5 * length);
+  const double distance = about_normal ? std::sqrt(middle) : middle;
   if (blurred / width > resolved * distance || blurred / length > resolved) return std::nullopt;
   return Place{leaf,
                std::clamp((double(p.x) - x) / width, 0., 1.),
