@@ -8,6 +8,7 @@
 #include "measure.hpp"
 #include "reflectree/brdf/registry.hpp"
 #include "reflectree/draw/report.hpp"
+#include "reflectree/verify/chi_square.hpp"
 
 namespace reflectree::cli {
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include "reflectree/verify/attack.hpp"
-#include "reflectree/verify/bins.hpp"
-#include "reflectree/verify/chi_square.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -14,10 +12,6 @@ Direction random_viewer(Pcg32& u);
 // A list of elevations in degrees, such as "0,45,80", each in [0, 90); throws Error.
 std::vector<double> parse_theta_o(const std::string& text);
 
-// The ratio T / (a M) of the function to its bound, anywhere: what an attack maximises.
-RatioFunction bound_ratio(const Subject& subject);
-// The same at the first trial of exact mode for a random wo.
-RatioTrial first_trial_ratio(const Subject& subject);
 // An attack, then trials.
 struct Overshoot {
   AttackResult attack;

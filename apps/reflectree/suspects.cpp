@@ -1,36 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "suspects.hpp"
 
-#include <algorithm>
-
 #include "reflectree/verify/faults.hpp"
 
 namespace reflectree::cli {
 
 namespace {
 
-// The heaviest leaf of every slab loses half of its bound; the other bounds stay.
-SamplerData with_halved_bounds(SamplerData data) {
-  for (MajorantTree& tree : data.exact) {
-    const auto heaviest = std::max_element(tree.mass.begin(), tree.mass.end());
-    double sum = 0;
-    for (const std::uint32_t m : tree.mass) sum += m;
-    const std::uint32_t lost = *heaviest / 2;
-    *heaviest -= lost;
-    tree.volume = float(double(tree.volume) * (sum - lost) / sum);
+WayIn with_fault(WayIn way, const std::string& fault) {
+  if (fault == "bent") return bent(std::move(way), 1);
+  if (fault == "lost-support") {
+    return lost_support(
+        std::move(way),
+        [](Direction wo) {
+          return Direction{-wo.x, -wo.y, wo.z};
+        },
+        0.99f);
   }
-  return data;
-}
-
-ErasedSampler spoiled(ErasedSampler sampler, const std::string& fault, Direction wo) {
-  const Direction mirror{-wo.x, -wo.y, wo.z};
-  if (fault == "bent") return bent(std::move(sampler), 1);
-  if (fault == "swapped-pdf") return swapped_pdf(std::move(sampler));
-  if (fault == "lost-support") return lost_support(std::move(sampler), mirror, 0.99f);
-  if (fault == "scaled-pdf") return scaled_pdf(std::move(sampler), 1.02f);
-  if (fault == "scaled-weight") return scaled_weight(std::move(sampler), 1.02f);
-  if (fault == "dying") return dying(std::move(sampler), 100);
-  return sampler;
+  if (fault == "scaled-pdf") return scaled_pdf(std::move(way), 1.02f);
+  if (fault == "scaled-weight") return scaled_weight(std::move(way), 1.02f);
+  if (fault == "dying") return dying(std::move(way), 100);
+  return way;
 }
 
 }  // namespace
@@ -56,11 +46,20 @@ Subject with_fault(const std::string& fault, Subject subject) {
   return subject;
 }
 
-Suspects suspects(const Subject& subject, const std::string& fault, Direction wo) {
-  const Target target = subject.data.target;
-  return {spoiled(erase(subject.sampler.exact, target, "exact"), fault, wo),
-          spoiled(erase(subject.sampler.one_shot, target, "one-shot"), fault, wo),
-          target_function(subject.f, target)};
+Suspect suspect_with_fault(const Subject& subject, const std::string& fault) {
+  Suspect s = suspect(subject.sampler, subject.f, &subject.data);
+  for (WayIn& way : s.ways) way = with_fault(std::move(way), fault);
+  if (fault == "scaled-pdf") {
+    for (auto* pdf : {&s.exact_pdf, &s.one_shot_pdf}) {
+      *pdf = [inner = *pdf](Direction wo, Direction wi) { return 1.02f * inner(wo, wi); };
+    }
+  }
+  if (fault == "swapped-pdf") {
+    for (auto* pdf : {&s.exact_pdf, &s.one_shot_pdf}) {
+      *pdf = [inner = *pdf](Direction wo, Direction wi) { return inner(wi, wo); };
+    }
+  }
+  return s;
 }
 
 }  // namespace reflectree::cli

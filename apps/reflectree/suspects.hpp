@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What verify looks at: a subject's two modes and its function; and the faults that it can plant there.
+// The faults that verify can plant in what it looks at.
 #pragma once
 
-#include "reflectree/verify/erased.hpp"
+#include "reflectree/verify/ways.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -14,11 +14,7 @@ std::string fault_list();
 // The subject with a fault in its data ("halved-bound"); untouched for any other.
 Subject with_fault(const std::string& fault, Subject subject);
 
-struct Suspects {
-  ErasedSampler exact, one_shot;
-  TargetFunction f;
-};
-// Borrows the subject. Faults of sampling are planted about wo.
-Suspects suspects(const Subject& subject, const std::string& fault, Direction wo);
+// Borrows the subject. Any other fault is planted in every way into the sampler.
+Suspect suspect_with_fault(const Subject& subject, const std::string& fault);
 
 }  // namespace reflectree::cli

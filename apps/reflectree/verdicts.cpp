@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verdicts.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace reflectree::cli {
@@ -11,53 +12,72 @@ void Verdicts::line(const std::string& text) const {
   std::fflush(stdout);  // a check may take seconds
 }
 
-void Verdicts::heading(const std::string& words) {
-  group_ = words;
-  line(words);
+void Verdicts::flush() {
+  if (!held_names_.empty()) line(fmt::format("  pass  {}: {}", way_, held_names_));
+  held_names_.clear();
 }
 
-void Verdicts::record(const CheckResult& result) {
-  ++(result.passed ? held_ : failed_);
-  checks_.push_back({{"group", group_},
-                     {"name", result.name},
-                     {"passed", result.passed},
-                     {"statistic", result.statistic},
-                     {"threshold", result.threshold},
-                     {"p_value", result.p_value},
-                     {"detail", result.detail}});
+void Verdicts::heading(const std::string& where) {
+  if (where == where_) return;
+  flush();
+  for (const VerifyFigure& f : figures_) line(fmt::format("        {:<26} {:.4g}", f.name, f.value));
+  figures_.clear();
+  where_ = where;
+  if (!where.empty()) line(where);
 }
 
 void Verdicts::add(const CheckResult& result) {
-  record(result);
-  line("  " + to_line(result));
-}
-
-void Verdicts::add_group(const std::string& name, std::span<const CheckResult> results) {
-  std::string held;
-  for (const CheckResult& result : results) {
-    record(result);
-    if (!result.passed || context_.verbose) line("  " + to_line(result));
-    if (result.passed) held += (held.empty() ? "" : ", ") + result.name;
+  heading(result.where);
+  if (result.way != way_) flush();
+  way_ = result.way;
+  if (way_.empty() || !result.passed || !result.decided || context_.verbose) {
+    line("  " + to_line(result));
+  } else {
+    held_names_ += (held_names_.empty() ? "" : ", ") + result.name;
   }
-  if (!held.empty() && !context_.verbose) line(fmt::format("  pass  {}: {}", name, held));
 }
 
-void Verdicts::inform(const std::string& name, double value) {
-  figures_.push_back({{"group", group_}, {"name", name}, {"value", value}});
-  line(fmt::format("        {:<26} {:.4g}", name, value));
+void Verdicts::add(const VerifyFigure& figure) {
+  heading(figure.where);
+  figures_.push_back(figure);
 }
 
-int Verdicts::finish(const std::string& material) const {
-  const bool passed = failed_ == 0;
+int Verdicts::finish(const std::string& material, const VerifyReport& report) {
+  heading("");
+  int held = 0, failed = 0, open = 0;
+  Json checks = Json::array(), figures = Json::array(), notes = Json::array();
+  for (const CheckResult& c : report.checks) {
+    ++(!c.passed ? failed : c.decided ? held : open);
+    checks.push_back({{"group", c.where},
+                      {"way", c.way},
+                      {"name", c.name},
+                      {"passed", c.passed},
+                      {"decided", c.decided},
+                      {"statistic", c.statistic},
+                      {"threshold", c.threshold},
+                      {"p_value", c.p_value},
+                      {"detail", c.detail}});
+  }
+  for (const VerifyFigure& f : report.figures) {
+    figures.push_back({{"group", f.where}, {"name", f.name}, {"value", f.value}});
+  }
+  for (const std::string& note : report.notes) {
+    notes.push_back(note);
+    line("note  " + note);
+  }
+  const bool passed = failed == 0;
   if (context_.json) {
     context_.print_json("verify", {{"material", material},
                                    {"planted_fault", fault_},
                                    {"passed", passed},
-                                   {"checks", checks_},
-                                   {"figures", figures_}});
+                                   {"checks", checks},
+                                   {"figures", figures},
+                                   {"notes", notes}});
   }
   const std::string planted = fault_ == "none" ? "" : ", with the planted fault '" + fault_ + "'";
-  line(fmt::format("{}  {} checks hold, {} fail{}", passed ? "pass" : "FAIL", held_, failed_, planted));
+  const std::string undecided = open > 0 ? fmt::format(", {} cannot be told", open) : "";
+  line(fmt::format("{}  {} checks hold, {} fail{}{}", passed ? "pass" : "FAIL", held, failed, undecided,
+                   planted));
   return passed ? exit_success : exit_check_failed;
 }
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects verify's results: lines as they come, or JSON at the end.
+// Shows verify's results: lines as they come, or JSON at the end.
 #pragma once
 
-#include <span>
-
 #include "context.hpp"
-#include "reflectree/verify/result.hpp"
+#include "reflectree/verify/verify.hpp"
 
 namespace reflectree::cli {
 
@@ -14,24 +12,22 @@ class Verdicts {
   Verdicts(const Context& context, std::string planted_fault)
       : context_(context), fault_(std::move(planted_fault)) {}
 
-  void heading(const std::string& words);
+  // A line for each that fails or stays open; those that hold are summed up, a line for each way into the
+  // sampler (-v: a line for each).
   void add(const CheckResult& result);
-  // Many at once: a line for each that fails and one for those that hold (-v: one for each).
-  void add_group(const std::string& name, std::span<const CheckResult> results);
-  // A figure that is no check.
-  void inform(const std::string& name, double value);
+  void add(const VerifyFigure& figure);
 
   // The verdict; returns the exit code.
-  int finish(const std::string& material) const;
+  int finish(const std::string& material, const VerifyReport& report);
 
  private:
-  void record(const CheckResult& result);
+  void heading(const std::string& where);
+  void flush();
   void line(const std::string& text) const;
 
   const Context& context_;
-  std::string fault_, group_;
-  Json checks_ = Json::array(), figures_ = Json::array();
-  int held_ = 0, failed_ = 0;
+  std::string fault_, where_, way_, held_names_;
+  std::vector<VerifyFigure> figures_;  // of this heading
 };
 
 }  // namespace reflectree::cli

@@ -7,7 +7,6 @@
 
 #include "parallel.hpp"
 #include "reflectree/math/low_discrepancy.hpp"
-#include "reflectree/math/sum.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree {
@@ -92,53 +91,86 @@ AttackResult attack(const RatioFunction& ratio, const AttackOptions& options, co
   return result;
 }
 
-OvershootMass overshoot_mass(const RatioTrial& trial, std::uint64_t trials, double attacked_worst,
-                             std::uint64_t seed, const Host& host) {
-  constexpr std::uint64_t chunk = 1 << 18;
-  struct Part {
-    double ratio = 0, excess = 0, excess2 = 0, worst = 0;
-    std::uint64_t overshoots = 0;
-  };
-  std::vector<Part> parts((trials + chunk - 1) / chunk);
-  detail::for_each_index(host, true, parts.size(), [&](std::size_t c) {
-    Pcg32 u = detail::part_generator(seed, c);
-    Part& p = parts[c];
-    for (std::uint64_t i = std::min(chunk, trials - c * chunk); i > 0; --i) {
-      const double r = trial(u);
-      p.ratio += r;
-      if (!(r > 1)) continue;
-      ++p.overshoots;
-      p.excess += r - 1;
-      p.excess2 += sqr(r - 1);
-      p.worst = std::max(p.worst, r);
-    }
-  });
+void OvershootSums::add(double r) {
+  ++trials;
+  ratio += r;
+  worst = std::max(worst, r);
+  if (!(r > 1)) return;
+  ++overshoots;
+  excess += r - 1;
+  excess2 += sqr(r - 1);
+  ++octave[std::size_t(std::clamp(int(std::ceil(-std::log2(r - 1))), 0, int(octave.size()) - 1))];
+}
+
+void OvershootSums::add(const OvershootSums& other) {
+  ratio += other.ratio;
+  excess += other.excess;
+  excess2 += other.excess2;
+  worst = std::max(worst, other.worst);
+  trials += other.trials;
+  overshoots += other.overshoots;
+  for (std::size_t j = 0; j < octave.size(); ++j) octave[j] += other.octave[j];
+}
+
+OvershootMass overshoot_mass(const OvershootSums& sums, double attacked_worst) {
   OvershootMass result;
-  result.trials = trials;
-  Sum ratio, excess, excess2;
-  for (const Part& p : parts) {
-    ratio += p.ratio;
-    excess += p.excess;
-    excess2 += p.excess2;
-    result.overshoots += p.overshoots;
-    result.worst = std::max(result.worst, p.worst);
+  result.trials = sums.trials;
+  result.overshoots = sums.overshoots;
+  result.worst = sums.worst;
+  const double n = double(sums.trials), mean = sums.excess / n, mean_ratio = sums.ratio / n;
+  if (!(mean_ratio > 0)) return result;
+  const double range = std::max({sums.worst, attacked_worst, 1.}) - 1;
+  const double variance = std::max(sums.excess2 - n * mean * mean, 0.) / std::max(n - 1, 1.);
+  const double by_rate = rate_upper_bound(sums.overshoots, sums.trials, 0.975) * range;
+  const double by_mean = mean_upper_bound(mean, variance, range, sums.trials, 0.975);
+  const double each = 1 - 1e-6 / double(sums.octave.size());
+  double below = 0;
+  for (std::size_t j = 0; j + 1 < sums.octave.size(); ++j) {
+    below += std::exp2(-double(j)) * rate_lower_bound(sums.octave[j], sums.trials, each);
   }
-  const double n = double(trials), mean = excess.value() / n, mean_ratio = ratio.value() / n;
-  const double range = std::max({result.worst, attacked_worst, 1.}) - 1;
-  const double variance = std::max(excess2.value() - n * mean * mean, 0.) / std::max(n - 1, 1.);
-  const double by_rate = rate_upper_bound(result.overshoots, trials, 0.975) * range;
-  const double by_mean = mean_upper_bound(mean, variance, range, trials, 0.975);
-  result.estimate = mean_ratio > 0 ? mean / mean_ratio : 0;
-  result.upper = mean_ratio > 0 ? std::min(by_rate, by_mean) / mean_ratio : 0;
+  result.estimate = mean / mean_ratio;
+  result.upper = std::min(by_rate, by_mean) / mean_ratio;
+  result.surely = below / mean_ratio;
   return result;
 }
 
+OvershootMass overshoot_mass(const RatioTrial& trial, std::uint64_t trials, double attacked_worst,
+                             std::uint64_t seed, const Host& host) {
+  constexpr std::uint64_t chunk = 1 << 18;
+  std::vector<OvershootSums> parts((trials + chunk - 1) / chunk);
+  detail::for_each_index(host, true, parts.size(), [&](std::size_t c) {
+    Pcg32 u = detail::part_generator(seed, c);
+    OvershootSums& p = parts[c];
+    for (std::uint64_t i = std::min(chunk, trials - c * chunk); i > 0; --i) p.add(trial(u));
+  });
+  OvershootSums total;
+  for (const OvershootSums& p : parts) total.add(p);
+  return overshoot_mass(total, attacked_worst);
+}
+
 CheckResult check_overshoot(const OvershootMass& mass, double limit) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, "%llu overshoots in %llu trials, worst ratio %.5g, estimate %.3g",
-                static_cast<unsigned long long>(mass.overshoots),
-                static_cast<unsigned long long>(mass.trials), mass.worst, mass.estimate);
-  return {"overshoot_mass", mass.upper <= limit, mass.upper, limit, 1, buffer};
+  CheckResult result;
+  result.name = "overshoot_mass";
+  result.threshold = limit;
+  result.passed = mass.surely <= limit;
+  result.decided = !result.passed || mass.upper <= limit;
+  result.statistic = result.passed ? mass.upper : mass.surely;
+  char buffer[240];
+  int written = std::snprintf(
+      buffer, sizeof buffer, "%llu overshoots in %llu trials, worst ratio %.5g, estimate %.3g, at most %.3g",
+      static_cast<unsigned long long>(mass.overshoots), static_cast<unsigned long long>(mass.trials),
+      mass.worst, mass.estimate, mass.upper);
+  if (!result.decided && mass.estimate < limit) {
+    // Both bounds narrow with the root of the trials at least.
+    const double factor = sqr((mass.upper - mass.estimate) / (limit - mass.estimate));
+    std::snprintf(buffer + written, sizeof buffer - std::size_t(written),
+                  "; so many trials cannot tell, about %.1g might", double(mass.trials) * factor);
+  } else if (!result.decided) {
+    std::snprintf(buffer + written, sizeof buffer - std::size_t(written),
+                  "; probably above, but so many trials cannot be sure");
+  }
+  result.detail = buffer;
+  return result;
 }
 
 }  // namespace reflectree

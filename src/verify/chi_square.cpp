@@ -14,8 +14,8 @@ namespace reflectree {
 namespace {
 
 constexpr std::uint64_t chunk = 1 << 14;
-constexpr double least_expected = 5;       // bins below are pooled, as everywhere
-constexpr std::uint64_t least_count = 50;  // of weighted bins, whose variance is measured
+constexpr double least_expected = 5;  // bins below are pooled, as everywhere
+constexpr double least_count = 50;    // of weighted bins, whose variance is measured
 
 Tally empty_tally(const ErasedSampler& sampler, std::size_t bins) {
   Tally tally;
@@ -150,30 +150,36 @@ CheckResult check_counts(const Tally& tally, std::span<const double> density,
   return pearson("chi_square_pdf", tally, density, options);
 }
 
-// Weighted counts S have mean n m and, for many small bins, independent variances near the sum of w^2.
+// Weighted counts S have mean n m and, for many small bins, independent variances near the sum of w^2. Its
+// mean is n m times the mean of w^2 over that of w, which hardly varies inside a bin: unlike the sum itself
+// it does not follow the fluctuation that it judges. Bins are grouped by what is expected, for the same
+// reason.
 CheckResult check_weights(const Tally& tally, const Bins& bins, const ChiSquareOptions& options) {
-  double statistic = 0, expected = 0, observed = 0, variance = 0;
-  std::uint64_t count = 0;
+  double statistic = 0, expected = 0, observed = 0, variance = 0, counts = 0;
   int groups = 0;
   const auto close_group = [&] {
     statistic += sqr(observed - expected) / variance;
     ++groups;
-    expected = observed = variance = 0;
-    count = 0;
+    expected = observed = variance = counts = 0;
   };
+  Sum all, all2;
+  for (std::size_t i = 0; i < tally.weight.size(); ++i) all += tally.weight[i], all2 += tally.weight2[i];
+  const double ratio = all.value() > 0 ? all2.value() / all.value() : 0;
+  const auto drawn = double(std::accumulate(tally.count.begin(), tally.count.end(), std::uint64_t{0}));
   const std::size_t n = bins.mass.size();
-  const auto order = sorted_by(n, [&](std::size_t i) { return double(tally.count[i]); });
+  const auto order = sorted_by(n, [&](std::size_t i) { return bins.mass[i]; });
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = order[k];
-    expected += double(tally.samples) * bins.mass[i];
+    const double here = double(tally.samples) * bins.mass[i];
+    expected += here;
     observed += tally.weight[i];
-    variance += tally.weight2[i];
-    count += tally.count[i];
-    if (count >= least_count && variance > 0) close_group();
+    variance += here * (tally.weight[i] > 0 ? tally.weight2[i] / tally.weight[i] : ratio);
+    counts += drawn * bins.mass[i] / bins.total;
+    if (counts >= least_count && variance > 0 && k + 1 < n) close_group();
   }
+  if (variance > 0) close_group();
   CheckResult result = verdict("chi_square_weights", statistic, std::max(groups, 1), options);
-  // Only the heaviest group could be left open, and then there is too little to judge.
-  result.passed = result.passed && tally.invalid == 0 && groups > 1 && count == 0;
+  result.passed = result.passed && tally.invalid == 0 && groups > 1;
   result.detail = text("%.0f groups, level %.2g, %.0f invalid", tally.sampler, groups,
                        sidak(options.family_significance, options.tests), double(tally.invalid));
   return result;
@@ -195,6 +201,21 @@ CheckResult check_mean_weight(const Tally& tally, const Bins& bins, const ChiSqu
   std::snprintf(buffer, sizeof buffer, "%s, mean %.7g, albedo %.7g, standard error %.2g",
                 tally.sampler.c_str(), mean, bins.total, error);
   result.detail = buffer;
+  return result;
+}
+
+CheckResult check_together(const std::string& name, std::span<const double> p_values,
+                           const ChiSquareOptions& options) {
+  double sum = 0;
+  for (const double p : p_values) sum += normal_upper_quantile(std::clamp(p, 1e-300, 1 - 1e-15));
+  CheckResult result;
+  result.name = name;
+  result.statistic = p_values.empty() ? 0 : sum / std::sqrt(double(p_values.size()));
+  const double level = sidak(options.family_significance, options.tests);
+  result.threshold = normal_upper_quantile(level);
+  result.p_value = 0.5 * std::erfc(result.statistic / std::sqrt(2.));
+  result.passed = result.statistic <= result.threshold;
+  result.detail = std::to_string(p_values.size()) + " directions wo together, in standard deviations";
   return result;
 }
 

@@ -6,35 +6,15 @@
 #include <cmath>
 #include <cstdio>
 
+#include "neighbours.hpp"
 #include "parallel.hpp"
-#include "reflectree/math/frame.hpp"
 #include "reflectree/verify/bins.hpp"
 
 namespace reflectree {
 namespace {
 
-// Rounding to float displaces wi across its direction and along it. Along it is no harm to wi itself, but
-// near grazing, opposite to wo, it tilts the half vector of a function that takes wi at its word.
-std::array<Vec3<double>, 7> neighbours(Direction wi) {
-  const Vec3<double> w = normalize(Vec3<double>{wi.x, wi.y, wi.z});
-  const Frame<double> frame = frame_from_normal(w);
-  constexpr double across = 3e-7, along = 1.2e-7;
-  return {w,
-          w + across * frame.s,
-          w - across * frame.s,
-          w + across * frame.t,
-          w - across * frame.t,
-          (1 + along) * w,
-          (1 - along) * w};
-}
-
-struct Range {
-  double lo = INFINITY, hi = 0;
-  void add(double x) { lo = std::min(lo, x), hi = std::max(hi, x); }
-  bool holds(double x, double tolerance) const {
-    return x >= lo * (1 - tolerance) && x <= hi * (1 + tolerance);
-  }
-};
+using detail::neighbours;
+using detail::Range;
 
 struct Counts {
   int drawn = 0, none = 0, dead = 0, invalid = 0, not_finite = 0;

@@ -20,15 +20,22 @@ struct Comparison {
 
 CheckResult check_albedo_table(const std::function<double(Direction wo)>& albedo, const TargetFunction& f,
                                const FurnaceOptions& options, const Host& host) {
-  std::vector<Comparison> list(std::size_t(options.directions) + 1);
+  const auto directions = std::size_t(options.directions);
+  std::vector<Comparison> list(options.cosines.size() + directions + 1);
   Pcg32 u = detail::part_generator(options.seed, 0);
-  for (auto& c : list) c.theta_o = options.max_theta_o * to_unit_double(u());
+  for (std::size_t i = 0; i < directions; ++i) list[i].theta_o = options.max_theta_o * to_unit_double(u());
+  for (std::size_t i = 0; i < options.cosines.size(); ++i) {
+    list[directions + i].theta_o = pi_v<double> / 2 - std::asin(std::min(options.cosines[i], 1.));
+  }
+  // Every place at an azimuth of its own.
+  std::vector<double> phi;
+  for (std::size_t i = 0; i < list.size(); ++i) phi.push_back(2 * pi_v<double> * to_unit_double(u()));
   list.back().theta_o = options.grazing_theta_o;
   detail::for_each_index(host, f.concurrent, list.size(), [&](std::size_t i) {
     Comparison& c = list[i];
     const double s = std::sin(c.theta_o), z = std::sin(pi_v<double> / 2 - c.theta_o);
-    const Direction wo{float(s), 0, float(z)};
-    const double tolerance = i + 1 == list.size() ? options.grazing_tolerance : options.tolerance;
+    const Direction wo{float(s * std::cos(phi[i])), float(s * std::sin(phi[i])), float(z)};
+    const double tolerance = c.theta_o > options.max_theta_o ? options.grazing_tolerance : options.tolerance;
     ReferenceOptions reference_options;
     reference_options.relative_tolerance = 0.2 * tolerance;
     reference_options.max_evaluations = options.max_evaluations;

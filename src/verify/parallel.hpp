@@ -32,4 +32,11 @@ inline Pcg32 part_generator(std::uint64_t seed, std::uint64_t i) {
   return Pcg32(z ^ (z >> 31U), i);
 }
 
+// A seed for each of many works.
+inline std::uint64_t mixed_seed(std::uint64_t seed, std::uint64_t a, std::uint64_t b = 0) {
+  Pcg32 u = part_generator(seed ^ (0x9e3779b97f4a7c15ULL * (b + 1)), a);
+  const std::uint64_t high = u();
+  return (high << 32U) | u();
+}
+
 }  // namespace reflectree::detail

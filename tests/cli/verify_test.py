@@ -4,7 +4,7 @@ import unittest
 
 from program import ProgramTest
 
-QUICK = ["--theta-o-deg", "45", "--bound-trials", "1000000"]
+QUICK = ["--theta-o-deg", "45", "--random", "1", "--bound-trials", "1000000", "--samples", "1000000"]
 
 
 class Verify(ProgramTest):
@@ -18,8 +18,15 @@ class Verify(ProgramTest):
             self.assertTrue(result["passed"])
             names = {check["name"] for check in result["checks"]}
             self.assertLessEqual({"chi_square", "chi_square_pdf", "chi_square_weights", "mean_weight", "pdf_agrees",
-                                  "weight_agrees", "support", "alive", "finite", "pdf_integral", "albedo_table",
-                                  "sample_once", "overshoot_mass", "isotropy"}, names)
+                                  "weight_agrees", "alive", "finite", "pdf_integral", "albedo_table",
+                                  "sample_once", "overshoot_mass", "isotropy", "channel_weights", "lanes", "target", "support",
+                                  "mode_agrees", "round_trip", "leaf_slope_y", "leaf_shape", "leaf_distinct",
+                                  "packed_albedo", "packed_slabs", "packed_leaves", "packed_choice",
+                                  "packed_descent", "acceptance", "giving_up"}, names)
+            ways = {check["way"] for check in result["checks"]} - {""}
+            self.assertEqual(ways, {"exact", "exact, n", "exact, batch", "one-shot", "one-shot, points",
+                                    "one-shot, n", "one-shot, batch", "one-shot, batch of points",
+                                    "one-shot, propose"})
 
     def test_planted_faults_are_caught(self):
         caught_by = {"bent": "chi_square", "halved-bound": "overshoot_mass", "swapped-pdf": "pdf_agrees",

@@ -21,7 +21,7 @@ MAY_SEE = {
     "sampler": ("base", "math", "brdf"),
     "simd": CORE,
     "io": CORE,
-    "verify": CORE,
+    "verify": (*CORE, "simd"),
     "peers": CORE,
     "render": (*CORE, "io", "peers"),  # reads meshes and pictures; chooses samplers by name
     "draw": (*CORE, "verify"),

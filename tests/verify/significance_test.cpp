@@ -31,6 +31,9 @@ TEST(Significance, RateBoundCoversTheRate) {
   // P(X <= k) = 1 - confidence at the bound; here k = 1 of 10.
   const double p = rate_upper_bound(1, 10, 0.9);
   EXPECT_NEAR(std::pow(1 - p, 10) + 10 * p * std::pow(1 - p, 9), 0.1, 1e-10);
+  // From below: P(X >= 1) = 1 - confidence.
+  EXPECT_NEAR(1 - std::pow(1 - rate_lower_bound(1, 10, 0.9), 10), 0.1, 1e-10);
+  EXPECT_EQ(rate_lower_bound(0, 10, 0.9), 0);
 }
 
 TEST(Significance, MeanBoundCoversTheMeanOfRareEvents) {

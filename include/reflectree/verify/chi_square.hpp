@@ -42,6 +42,10 @@ CheckResult check_weights(const Tally& tally, const Bins& bins, const ChiSquareO
 CheckResult check_mean_weight(const Tally& tally, const Bins& bins, const ChiSquareOptions& options = {},
                               double tolerance = 1e-4);
 
+// p-values of independent tests, each too weak alone: the sum of their normal quantiles (Stouffer 1949).
+CheckResult check_together(const std::string& name, std::span<const double> p_values,
+                           const ChiSquareOptions& options = {});
+
 // Variance of the weight over its mean squared; "no sample" counts as weight 0.
 double relative_variance(const Tally& tally);
 

@@ -19,7 +19,7 @@ struct TargetFunction {
   bool concurrent = true;
 };
 
-// The half vector is formed in double: in float, wo + wi loses the digits of the sharpest lobes.
+// By the referee's own definition of the target, in double (reference_target.hpp).
 TargetFunction target_function(AnyBrdf f, Target target = {});
 
 struct DrawnDirection {

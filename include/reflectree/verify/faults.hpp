@@ -2,7 +2,9 @@
 // Planted faults: the twins that every check must reject. Each wraps a sampler and spoils one thing.
 #pragma once
 
+#include "reflectree/sampler/sampler_data.hpp"
 #include "reflectree/verify/erased.hpp"
+#include "reflectree/verify/suspect.hpp"
 
 namespace reflectree {
 
@@ -25,5 +27,20 @@ ErasedSampler scaled_weight(ErasedSampler sampler, float factor);
 
 // One of `period` samples is "no sample".
 ErasedSampler dying(ErasedSampler sampler, std::uint32_t period);
+
+// The same on a way into a sampler. Pivot and axis may depend on wo.
+using OfViewer = std::function<Direction(Direction wo)>;
+WayIn bent(
+    WayIn way, int coordinate, double amount = 0.02, OfViewer pivot = [](Direction) { return Direction{}; });
+WayIn lost_support(WayIn way, OfViewer axis, float cos_angle);
+WayIn scaled_pdf(WayIn way, float factor);
+WayIn scaled_weight(WayIn way, float factor);
+WayIn dying(WayIn way, std::uint32_t period);
+// Places of a direction and its weights that a fault may rewrite: spoil(wo, u, drawn, weights).
+using Spoil = std::function<void(Direction wo, Pcg32& u, DrawnAt& drawn, std::span<float> weights)>;
+WayIn spoiled(WayIn way, std::string words, Spoil spoil);
+
+// The heaviest leaf of every slab loses half of its bound; the other bounds stay.
+SamplerData with_halved_bounds(SamplerData data);
 
 }  // namespace reflectree

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "reflectree/sampler/host.hpp"
 #include "reflectree/verify/reference.hpp"
@@ -13,6 +14,7 @@ namespace reflectree {
 
 struct FurnaceOptions {
   int directions = 200;                         // random theta_o, uniform up to max_theta_o
+  std::vector<double> cosines;                  // more: of chosen theta_o, such as a table's nodes
   double max_theta_o = 1.5690509975429023;      // 89.9 degrees
   double tolerance = 1e-4;                      // relative, there
   double grazing_theta_o = 1.5707788735023767;  // 89.999 degrees

@@ -14,6 +14,8 @@ double chi_square_quantile(double significance, double degrees_of_freedom);
 double normal_two_sided(double z);
 // The z with P(|Z| >= z) = significance.
 double normal_two_sided_quantile(double significance);
+// The z with P(Z >= z) = significance.
+double normal_upper_quantile(double significance);
 
 // Sidak 1967: the level of each of `tests` independent tests at which the whole family errs with
 // probability `family`.
@@ -21,6 +23,8 @@ double sidak(double family, int tests);
 
 // Upper end of the one-sided Clopper-Pearson interval for the rate of `events` in `trials`.
 double rate_upper_bound(std::uint64_t events, std::uint64_t trials, double confidence);
+// And the lower end.
+double rate_lower_bound(std::uint64_t events, std::uint64_t trials, double confidence);
 
 // Upper bound of the mean of `count` independent variables in [0, range] with the given sample mean and
 // variance; Maurer & Pontil 2009, theorem 4 (empirical Bernstein).

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/verify/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "elevations.hpp"
+#include "parallel.hpp"
+#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/verify/significance.hpp"
+
+namespace reflectree {
+
+TrialLog watch_trials(const Suspect& suspect, const WayIn& way, std::uint64_t directions, std::uint64_t seed,
+                      const Host& host) {
+  constexpr std::uint64_t chunk = 1 << 14, a_viewer = 2 * batch_lanes;
+  const std::uint64_t chunks = (directions + chunk - 1) / chunk;
+  std::vector<TrialLog> parts(chunks);
+  detail::for_each_index(host, suspect.concurrent(), chunks, [&](std::size_t c) {
+    Pcg32 u = detail::part_generator(seed, c);
+    const std::uint64_t here = std::min(chunk, directions - c * chunk);
+    for (std::uint64_t i = 0; i < here; i += a_viewer) {
+      way.watch(detail::random_viewer(u), u, std::size_t(std::min(a_viewer, here - i)), parts[c]);
+    }
+  });
+  TrialLog sum;
+  for (const TrialLog& part : parts) sum.add(part);
+  return sum;
+}
+
+CheckResult check_acceptance(const std::string& way, const TrialLog& log, const ChiSquareOptions& options) {
+  const int lanes = int(
+      std::count_if(log.lane.begin(), log.lane.end(), [](const TrialLog::Lane& l) { return l.trials > 0; }));
+  CheckResult result;
+  result.name = "acceptance";
+  result.way = way;
+  result.threshold =
+      normal_two_sided_quantile(sidak(options.family_significance, options.tests * 2 * std::max(lanes, 1)));
+  std::size_t worst = 0;
+  bool dependent = false;
+  for (std::size_t l = 0; l < log.lane.size(); ++l) {
+    const TrialLog::Lane& lane = log.lane[l];
+    // Ratios are rounded to float: some 1e-7 of the trials, and single ones.
+    const double difference =
+        std::abs(double(lane.accepted) - lane.expected) - 3 - 1e-6 * double(lane.trials);
+    const double z = difference > 0 ? difference / std::sqrt(lane.variance + 1) : 0;
+    const double together = std::abs(lane.together) / std::sqrt(lane.together_variance + 25);
+    if (std::max(z, together) > result.statistic) {
+      result.statistic = std::max(z, together), worst = l, dependent = together > z;
+    }
+  }
+  result.passed = result.statistic <= result.threshold && lanes > 0;
+  char buffer[240];
+  const TrialLog::Lane& lane = log.lane[worst];
+  std::snprintf(
+      buffer, sizeof buffer,
+      "%s, standard deviations; worst of %d lanes: %zu, %llu of %llu accepted where %.1f are expected%s",
+      way.c_str(), lanes, worst, static_cast<unsigned long long>(lane.accepted),
+      static_cast<unsigned long long>(lane.trials), lane.expected,
+      dependent ? "; it depends on the lane before" : "");
+  result.detail = buffer;
+  return result;
+}
+
+CheckResult check_giving_up(const WayIn& way, std::uint64_t promised) {
+  CheckResult result;
+  result.name = "giving_up";
+  result.way = way.name;
+  std::uint64_t fewest = 0;
+  for (int i = 0; i < 64; ++i) {
+    const float theta = (float(i) + 0.5f) / 64 * 0.5f * pi;
+    const std::uint64_t trials = way.give_up(direction_from_angles(theta, 0.4f * float(i)));
+    if (trials > 0 && (fewest == 0 || trials < fewest)) fewest = trials;
+  }
+  result.decided = fewest > 0;
+  result.passed = fewest == 0 || fewest >= promised;
+  result.statistic = fewest > 0 ? double(promised) - double(fewest) : 0;
+  char buffer[160];
+  std::snprintf(buffer, sizeof buffer,
+                fewest > 0 ? "%s gives up after %llu trials, %llu are promised"
+                           : "%s never gave up (%llu of %llu): its bounds are met wherever it was refused",
+                way.name.c_str(), static_cast<unsigned long long>(fewest),
+                static_cast<unsigned long long>(promised));
+  result.detail = buffer;
+  return result;
+}
+
+namespace {
+
+// The leaf that holds a point of the square, in a canonical tree.
+class LeafFinder {
+ public:
+  LeafFinder(const std::vector<Split>& nodes, const Domain& domain) : half_(domain.half) {
+    std::size_t next = 0, leaf = 0;
+    nodes_.reserve(nodes.size());
+    add(nodes, next, leaf);
+  }
+  struct Found {
+    std::size_t index;
+    double x, y, width, length;
+  };
+  Found find(Vec2<float> p) const {
+    Found at{0, -1, half_ ? 0. : -1., 2, half_ ? 1. : 2.};
+    std::size_t i = 0;
+    while (nodes_[i].split != Split::leaf) {
+      const bool x = nodes_[i].split == Split::x;
+      double &start = x ? at.x : at.y, &size = x ? at.width : at.length;
+      size *= 0.5;
+      const bool upper = double(x ? p.x : p.y) >= start + size;
+      if (upper) start += size;
+      i = upper ? nodes_[i].upper_or_leaf : i + 1;
+    }
+    at.index = nodes_[i].upper_or_leaf;
+    return at;
+  }
+
+ private:
+  struct Node {
+    Split split;
+    std::size_t upper_or_leaf;
+  };
+  void add(const std::vector<Split>& nodes, std::size_t& next, std::size_t& leaf) {
+    const Split split = nodes[next++];
+    const std::size_t at = nodes_.size();
+    nodes_.push_back({split, split == Split::leaf ? leaf++ : 0});
+    if (split == Split::leaf) return;
+    add(nodes, next, leaf);
+    nodes_[at].upper_or_leaf = nodes_.size();
+    add(nodes, next, leaf);
+  }
+  std::vector<Node> nodes_;
+  bool half_;
+};
+
+// The bound of T / a at a point of the square, per share of it.
+class Bounds {
+ public:
+  explicit Bounds(const SamplerData& data) : data_(data) {
+    for (const MajorantTree& tree : data_.exact) {
+      finders_.emplace_back(tree.nodes, data_.domain);
+      double sum = 0;
+      for (const std::uint32_t m : tree.mass) sum += m;
+      scale_.push_back(double(tree.volume) / sum);
+    }
+  }
+  double at(Direction wo, Vec2<float> p) const {
+    const float theta = theta_of(wo);
+    const std::size_t slab = find_slab(data_.exact_partition, {&theta, 1});
+    const Tree& tree = data_.exact[slab];
+    const auto leaf = finders_[slab].find(p);
+    const double share = leaf.width * leaf.length / (data_.domain.half ? 2 : 4);
+    const double s = 2 * (double(p.x) - leaf.x) / leaf.width - 1;
+    const double t = 2 * (double(p.y) - leaf.y) / leaf.length - 1;
+    const double q = (1 + tree.slope_x[leaf.index] / 128. * s) * (1 + tree.slope_y[leaf.index] / 128. * t);
+    return scale_[slab] * tree.mass[leaf.index] / share * q;
+  }
+
+ private:
+  const SamplerData& data_;
+  std::vector<LeafFinder> finders_;
+  std::vector<double> scale_;
+};
+
+}  // namespace
+
+RatioFunction bound_ratio(AnyBrdf f, const SamplerData& data) {
+  const auto bounds = std::make_shared<const Bounds>(data);
+  return [bounds, f = std::move(f), &data](std::span<const AttackPoint> points, std::span<double> ratio) {
+    const auto channels = std::size_t(f.channels());
+    std::vector<ShadingGeometry<float>> geometry;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float y = float(points[i][2]);
+      const Vec2<float> p{2 * float(points[i][1]) - 1, data.domain.half ? y : 2 * y - 1};
+      const Direction wo = direction_from_angles(89.999f * (pi / 180) * float(points[i][0]), 0.f);
+      const DomainPoint at = lift(data.domain, wo, p);
+      ratio[i] = 0;
+      if (!(at.projected_area > 0)) continue;
+      const double albedo = double(albedo_at(data.albedo, wo.z));
+      if (!(albedo > 0)) continue;
+      ratio[i] = double(at.projected_area) / (albedo * bounds->at(wo, p));
+      geometry.push_back(at.geometry), index.push_back(i);
+    }
+    std::vector<float> values(geometry.size() * channels);
+    f.eval(geometry, values);
+    for (std::size_t k = 0; k < index.size(); ++k) {
+      ratio[index[k]] *= double(data.target(values.data() + k * channels, int(channels)));
+    }
+  };
+}
+
+}  // namespace reflectree

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samplers that were built, and their copies with one thing spoiled, for the tests of the checks.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "reflectree/brdf/models/plastic.hpp"
+#include "reflectree/verify/ways.hpp"
+
+namespace reflectree {
+
+// A coloured material, small, of known type: batches are computed in lanes.
+inline const Plastic& coloured() {
+  static const Plastic f = [] {
+    Plastic p;
+    p.kd = {0.5f, 0.2f, 0.1f};
+    p.alpha = 0.3f;
+    return p;
+  }();
+  return f;
+}
+
+struct Built {
+  SamplerData data;
+  Sampler<Plastic> sampler;
+  Suspect suspect() const { return reflectree::suspect(sampler, AnyBrdf(coloured()), &data); }
+};
+inline const Built& built() {
+  static const Built b = [] {
+    SamplerData data = build(AnyBrdf(coloured()));
+    Sampler<Plastic> sampler = make_sampler(coloured(), data);
+    return Built{std::move(data), std::move(sampler)};
+  }();
+  return b;
+}
+
+// The same from data or a packed form of one's own.
+inline Sampler<Plastic> sampler_of(PackedSampler packed) {
+  const auto shared = std::make_shared<const PackedSampler>(std::move(packed));
+  return {ExactSampler<Plastic>(coloured(), shared), OneShotSampler<Plastic>(coloured(), shared)};
+}
+
+inline bool fails(std::span<const CheckResult> results, const std::string& name) {
+  bool found = false, failed = false;
+  for (const CheckResult& r : results) {
+    found = found || r.name == name;
+    failed = failed || (r.name == name && !r.passed);
+  }
+  EXPECT_TRUE(found) << "no check named " << name;
+  return failed;
+}
+inline void expect_all_pass(std::span<const CheckResult> results) {
+  for (const CheckResult& r : results) EXPECT_TRUE(r.passed) << to_line(r);
+}
+
+}  // namespace reflectree
