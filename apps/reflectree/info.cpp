@@ -37,7 +37,7 @@ struct Leaves {
 template <class T>
 Leaves leaves_of(const std::vector<T>& trees) {
   Leaves leaves;
-  for (const Tree& tree : trees) {
+  for (const CanonicalTree& tree : trees) {
     leaves.total += tree.mass.size();
     leaves.largest = std::max(leaves.largest, tree.mass.size());
   }
@@ -117,8 +117,10 @@ void show_info(const Context& context, const std::string& command, const Subject
   line("bounds", bounds_text(s));
   line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(*s.packed)) / 1024));
   if (s.file_size) line("on disk", fmt::format("{:.1f} KiB", double(*s.file_size) / 1024));
-  line("albedo of target", fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g} up to 89.9 degrees",
-                                       *low / d.target.scale, *high / d.target.scale, d.albedo.albedo.size(), d.albedo.relative_error));
+  line("albedo of target",
+       fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g} up to 89.9 degrees",
+                   *low / d.target.scale, *high / d.target.scale, d.albedo.albedo.size(),
+                   d.albedo.relative_error));
   line("expected trials", fmt::format("{:.4g} in the worst slab", d.report.expected_trials));
   line("overshoot mass",
        fmt::format("{:.2g} in the worst slab, as the build's attack estimates it", d.report.overshoot_mass));

@@ -41,7 +41,7 @@ Samples draw_samples(const Subject& subject, Direction wo, const Options& o, std
       continue;
     }
     samples.values.insert(samples.values.end(), {s->wi.x, s->wi.y, s->wi.z, s->pdf});
-    for (int c = 0; c < subject.f.channels(); ++c) samples.values.push_back(channel(s->weight, c));
+    for (int c = 0; c < subject.f.channels(); ++c) samples.values.push_back(channel_value(s->weight, c));
   }
   return samples;
 }

@@ -63,7 +63,8 @@ std::optional<Domain> parse_domain(const std::string& text) {
     return Domain{DomainKind::stretched, true, exponent};
   }
   throw Error("no domain '" + text + "'", "--domain",
-              "write auto, projected_disk, equal_area, half_vector, back_vector, mirror_vector, normal_vector, or stretched:A");
+              "write auto, projected_disk, equal_area, half_vector, back_vector, mirror_vector, "
+              "normal_vector, or stretched:A");
 }
 
 void check_target(const Target& target, const AnyBrdf& f) {
@@ -97,7 +98,8 @@ void add_build_choices(CLI::App& command, BuildChoices& choices) {
   option("--target", choices.target, "WORD",
          "What is sampled, of the channels: norm, luminance, maximum, channel:K");
   option("--domain", choices.domain, "WORD",
-         "Map of the square: auto, projected_disk, equal_area, half_vector, back_vector, mirror_vector, normal_vector, stretched:A");
+         "Map of the square: auto, projected_disk, equal_area, half_vector, back_vector, mirror_vector, "
+         "normal_vector, stretched:A");
 }
 
 BuildOptions build_options(const Context& context, const BuildChoices& choices) {

@@ -101,7 +101,7 @@ struct WaveletDisk {
     const Direction wi{x, y, sqrt(z2)};
     const float density = pdf(wo, wi);
     if (!(density > 0)) return std::nullopt;
-    return DirectionSample<Spectrum>{wi, density, scaled(eval(f, wo, wi), wi.z / density)};
+    return DirectionSample<Spectrum>{wi, density, scaled_value(eval(f, wo, wi), wi.z / density)};
   }
 };
 

@@ -59,9 +59,9 @@ void judge_viewer(const HardFunction& hard, const AnyBrdf& f, const Sampler<AnyB
   chi.seed = 2;
   const Tally o = tally_of(one_shot, bins, chi, host);
   const double stated = std::max(double(data.albedo.relative_error), 1e-6);
-  for (const CheckResult& r : {check_counts(e, bins, chi), check_weights(o, bins, chi),
-                               check_mean_weight(e, bins, chi, stated + error),
-                               check_mean_weight(o, bins, chi, stated + error)}) {
+  for (const CheckResult& r :
+       {check_counts(e, bins, chi), check_weights(o, bins, chi),
+        check_mean_weight(e, bins, chi, stated + error), check_mean_weight(o, bins, chi, stated + error)}) {
     row.p = std::min(row.p, r.p_value);
     if (r.passed) continue;
     row.wrong = true;
@@ -80,7 +80,8 @@ Row judge(const HardFunction& hard, double limit, bool stages, const Host& threa
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   Host host = threads;
   host.cancelled = [&] { return seconds() > limit; };
-  if (stages) host.stage = [&](const char* words) { std::fprintf(stderr, "%6.2f s  %s\n", seconds(), words); };
+  if (stages)
+    host.stage = [&](const char* words) { std::fprintf(stderr, "%6.2f s  %s\n", seconds(), words); };
   try {
     const AnyBrdf f = hard.make();
     const SamplerData data = build(f, {}, host);
@@ -128,7 +129,9 @@ int run(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     const Host host = host_with_threads(threads);
     bool wrong = false;
-    std::printf("| function | what | verdict | seconds | of a core | domain | slabs | leaves | trials | variance | least p | words |\n");
+    std::printf(
+        "| function | what | verdict | seconds | of a core | domain | slabs | leaves | trials | variance | "
+        "least p | words |\n");
     std::printf("|---|---|---|---:|---:|---|---:|---:|---:|---:|---:|---|\n");
     for (const HardFunction& hard : hard_functions()) {
       if (hard.name.find(only) == std::string::npos) continue;
@@ -137,9 +140,9 @@ int run(int argc, char** argv) {
         continue;
       }
       const Row r = judge(hard, limit, stages, host);
-      std::printf("| %s | %s | %s | %.2f | %.2f | %s | %zu | %zu | %.3f | %.4f | %.2g | %s |\n", hard.name.c_str(),
-                  cell(hard.what).c_str(), r.verdict.c_str(), r.seconds, r.cpu, r.domain.c_str(), r.slabs, r.leaves, r.trials,
-                  r.variance, r.p, cell(r.words).c_str());
+      std::printf("| %s | %s | %s | %.2f | %.2f | %s | %zu | %zu | %.3f | %.4f | %.2g | %s |\n",
+                  hard.name.c_str(), cell(hard.what).c_str(), r.verdict.c_str(), r.seconds, r.cpu,
+                  r.domain.c_str(), r.slabs, r.leaves, r.trials, r.variance, r.p, cell(r.words).c_str());
       std::fflush(stdout);
       wrong = wrong || r.wrong;
     }

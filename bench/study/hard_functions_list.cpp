@@ -34,7 +34,9 @@ float azimuth_between(Direction wo, Direction wi) {
   const Direction w = beside(wo, wi);
   return std::atan2(w.y, w.x);
 }
-float angle_to(Direction a, Direction b) { return 2 * std::asin(min(0.5f * std::sqrt(distance2(a, b)), 1.f)); }
+float angle_to(Direction a, Direction b) {
+  return 2 * std::asin(min(0.5f * std::sqrt(distance2(a, b)), 1.f));
+}
 
 // A needle that stands at a fixed place beside wo, on a ground.
 struct Needle {
@@ -117,27 +119,28 @@ HardFunction near(HardFunction f, std::function<Direction(Direction)> centre) {
 
 void add_smooth(std::vector<HardFunction>& list) {
   list.push_back(of("constant", "0.3", [](Direction, Direction) { return 0.3f; }));
-  list.push_back(of("seeliger", "0.3 / (cos_o + cos_i)",
-                    [](Direction o, Direction i) { return 0.3f / (o.z + i.z); }));
+  list.push_back(
+      of("seeliger", "0.3 / (cos_o + cos_i)", [](Direction o, Direction i) { return 0.3f / (o.z + i.z); }));
   list.push_back(of("ggx", "GGX 0.1, for comparison", Ggx{0.1f}));
   list.push_back(of("abg", "A / (B + |beta - beta_0|^g), g = 2.3", [](Direction o, Direction i) {
     const float b = std::hypot(i.x + o.x, i.y + o.y);
     return 1e-3f / (1e-5f + std::pow(b, 2.3f));
   }));
-  list.push_back(of("hapke surge", "opposition surge of width 0.01 on lunar dust", [](Direction o, Direction i) {
-    const float g = angle_to(o, i);
-    return 0.1f / (o.z + i.z) * (1 + 1 / (1 + std::tan(0.5f * min(g, 3.1f)) / 0.01f));
-  }));
+  list.push_back(
+      of("hapke surge", "opposition surge of width 0.01 on lunar dust", [](Direction o, Direction i) {
+        const float g = angle_to(o, i);
+        return 0.1f / (o.z + i.z) * (1 + 1 / (1 + std::tan(0.5f * min(g, 3.1f)) / 0.01f));
+      }));
   list.push_back(of("fifty lobes", "50 Gaussian lobes of width 0.03 to 0.13 beside wo", FiftyLobes()));
-  list.push_back(of("grating", "orders of a grating: cos^8 of 20 times the slope", [](Direction o, Direction i) {
-    const Direction w = beside(o, i);
-    const float c = std::cos(20 * (w.x + std::sqrt(max(0.f, 1 - o.z * o.z))));
-    return 0.05f + c * c * c * c * c * c * c * c;
-  }));
+  list.push_back(
+      of("grating", "orders of a grating: cos^8 of 20 times the slope", [](Direction o, Direction i) {
+        const Direction w = beside(o, i);
+        const float c = std::cos(20 * (w.x + std::sqrt(max(0.f, 1 - o.z * o.z))));
+        return 0.05f + c * c * c * c * c * c * c * c;
+      }));
   list.push_back(of("ross-li", "Ross-Thick Li-Sparse, clamped at 0", clamped_ross_li));
-  list.push_back(of("minnaert", "(cos_o cos_i)^-0.5", [](Direction o, Direction i) {
-    return 0.2f / std::sqrt(o.z * i.z);
-  }));
+  list.push_back(of("minnaert", "(cos_o cos_i)^-0.5",
+                    [](Direction o, Direction i) { return 0.2f / std::sqrt(o.z * i.z); }));
   list.push_back(of("phong 1975", "no cosine in the denominator's favour: (0.1 + cos^20) / cos_i",
                     [](Direction o, Direction i) {
                       const float r = max(0.f, o.z * i.z - o.x * i.x - o.y * i.y);
@@ -147,7 +150,9 @@ void add_smooth(std::vector<HardFunction>& list) {
 
 void add_needles(std::vector<HardFunction>& list) {
   for (const float width : {0.1f, 0.01f, 0.001f}) {
-    const std::string name = "mirror gauss " + std::string(width > 0.05f ? "0.1" : width > 5e-3f ? "0.01" : "0.001");
+    const std::string name = "mirror gauss " + std::string(width > 0.05f   ? "0.1"
+                                                           : width > 5e-3f ? "0.01"
+                                                                           : "0.001");
     list.push_back(of(name.c_str(), "exp(-|wi - mirror|^2 / a^2) / a^2", [width](Direction o, Direction i) {
       return 0.2f / (width * width) * gauss(i, mirror(o), width);
     }));
@@ -170,18 +175,23 @@ void add_needles(std::vector<HardFunction>& list) {
     };
   };
   const auto normal = [](Direction) { return Direction{0, 0, 1}; };
-  list.push_back(near(of("needle at normal", "width 1e-3 about the normal, on a ground", at_normal(0.1f)), normal));
-  list.push_back(near(of("needle at normal alone", "width 1e-3 about the normal, else 0", at_normal(0)), normal));
+  list.push_back(
+      near(of("needle at normal", "width 1e-3 about the normal, on a ground", at_normal(0.1f)), normal));
+  list.push_back(
+      near(of("needle at normal alone", "width 1e-3 about the normal, else 0", at_normal(0)), normal));
   const auto needle = [&list](const char* name, const char* what, Needle n, bool declared) {
     HardFunction f = declared ? of(name, what, DeclaredNeedle{n}) : of(name, what, n);
     f.centre = [n](Direction) { return n.centre(); };
     f.may_be_refused = !declared;
     list.push_back(std::move(f));
   };
-  needle("needle beside", "width 1e-3 off the plane of incidence, on a ground", {0.7f, 1.9f, 1e-3f, 1e5f, 0.1f}, false);
+  needle("needle beside", "width 1e-3 off the plane of incidence, on a ground",
+         {0.7f, 1.9f, 1e-3f, 1e5f, 0.1f}, false);
   needle("needle beside alone", "the same, else 0", {0.7f, 1.9f, 1e-3f, 1e5f, 0}, false);
-  needle("needle beside, declared", "the same on a ground, with its place told", {0.7f, 1.9f, 1e-3f, 1e5f, 0.1f}, true);
-  needle("needle 1e-4, declared", "width 1e-4 on a ground, with its place told", {0.7f, 1.9f, 1e-4f, 1e7f, 0.1f}, true);
+  needle("needle beside, declared", "the same on a ground, with its place told",
+         {0.7f, 1.9f, 1e-3f, 1e5f, 0.1f}, true);
+  needle("needle 1e-4, declared", "width 1e-4 on a ground, with its place told",
+         {0.7f, 1.9f, 1e-4f, 1e7f, 0.1f}, true);
 }
 
 void add_steps(std::vector<HardFunction>& list) {
@@ -190,8 +200,10 @@ void add_steps(std::vector<HardFunction>& list) {
       return std::abs(angle_to(i, mirror(o)) - radius) < 0.5f * width ? 2.f : 0.01f;
     };
   };
-  list.push_back(of("ring 42", "1 degree wide, 42 degrees about the mirror direction", ring(42 * degree, degree)));
-  list.push_back(of("ring 0.2", "0.05 degrees wide, 0.2 degrees about the mirror direction", ring(0.2f * degree, 0.05f * degree)));
+  list.push_back(
+      of("ring 42", "1 degree wide, 42 degrees about the mirror direction", ring(42 * degree, degree)));
+  list.push_back(of("ring 0.2", "0.05 degrees wide, 0.2 degrees about the mirror direction",
+                    ring(0.2f * degree, 0.05f * degree)));
   list.push_back(of("soft ring 42", "the same with a Gaussian profile", [](Direction o, Direction i) {
     return 0.01f + 2 * std::exp(-sqr((angle_to(i, mirror(o)) - 42 * degree) / (0.5f * degree)));
   }));
@@ -205,9 +217,9 @@ void add_steps(std::vector<HardFunction>& list) {
                     [](Direction o, Direction i) {
                       return 0.1f + (o.z < std::cos(50 * degree) ? 50 * gauss(i, mirror(o), 0.05f) : 0.f);
                     }));
-  list.push_back(of("step in theta_h", "1 inside 20 degrees of the half vector, else 0.05", [](Direction o, Direction i) {
-    return normalize(o + i).z > std::cos(20 * degree) ? 1.f : 0.05f;
-  }));
+  list.push_back(
+      of("step in theta_h", "1 inside 20 degrees of the half vector, else 0.05",
+         [](Direction o, Direction i) { return normalize(o + i).z > std::cos(20 * degree) ? 1.f : 0.05f; }));
   list.push_back(of("step in theta_d", "1 where wo.wi > 0.5, else 0.2",
                     [](Direction o, Direction i) { return dot(o, i) > 0.5f ? 1.f : 0.2f; }));
   list.push_back(of("sector", "1 within 30 degrees of azimuth of the mirror direction, else 0.05",
@@ -241,9 +253,11 @@ void add_scales(std::vector<HardFunction>& list) {
   list.push_back(refused("2e38", "the same near the end of float", scaled_lobe(2e38f)));
   list.push_back(refused("1e-42", "the same among the subnormal floats", scaled_lobe(1e-42f)));
   list.push_back(of("black", "0 everywhere", [](Direction, Direction) { return 0.f; }));
-  list.push_back(refused("rounded below 0", "-1e-9 where it should be 0",
-                         [](Direction o, Direction i) { return (o.z > 0.3f && i.z < 0.4f) ? -1e-9f : 0.2f; }));
-  list.push_back(refused("negative", "-0.1 at grazing", [](Direction, Direction i) { return i.z < 0.05f ? -0.1f : 0.2f; }));
+  list.push_back(refused("rounded below 0", "-1e-9 where it should be 0", [](Direction o, Direction i) {
+    return (o.z > 0.3f && i.z < 0.4f) ? -1e-9f : 0.2f;
+  }));
+  list.push_back(refused("negative", "-0.1 at grazing",
+                         [](Direction, Direction i) { return i.z < 0.05f ? -0.1f : 0.2f; }));
   list.push_back(refused("nan", "NaN where cos_i < 0.02", [](Direction, Direction i) {
     return i.z < 0.02f ? std::numeric_limits<float>::quiet_NaN() : 0.2f;
   }));
@@ -257,7 +271,8 @@ void add_values(std::vector<HardFunction>& list) {
   list.push_back(of("spectrum 2", "Spectrum(2), traits left out", coloured<2>));
   list.push_back(of("spectrum 4", "Spectrum(4), traits left out", coloured<4>));
   list.push_back(of("spectrum 40", "40 channels", coloured<40>));
-  list.push_back(of("double", "returns double", [](Direction o, Direction i) { return 0.3 / double(o.z + i.z); }));
+  list.push_back(
+      of("double", "returns double", [](Direction o, Direction i) { return 0.3 / double(o.z + i.z); }));
   list.push_back(of("int", "returns int", [](Direction, Direction) { return 1; }));
   list.push_back(of("array", "returns std::array<double, 5>", [](Direction, Direction i) {
     return std::array<double, 5>{0.1, 0.2, 0.3, 0.1 * double(i.z), 0.5};
@@ -267,9 +282,10 @@ void add_values(std::vector<HardFunction>& list) {
 }
 
 void add_manners(std::vector<HardFunction>& list) {
-  list.push_back(refused("bright azimuth", "1.3 times brighter within 3 degrees of one azimuth", [](Direction, Direction i) {
-    return 0.2f * (std::abs(std::atan2(i.y, i.x) - 1) < 3 * degree ? 1.3f : 1.f);
-  }));
+  list.push_back(refused("bright azimuth", "1.3 times brighter within 3 degrees of one azimuth",
+                         [](Direction, Direction i) {
+                           return 0.2f * (std::abs(std::atan2(i.y, i.x) - 1) < 3 * degree ? 1.3f : 1.f);
+                         }));
   list.push_back(refused("cos 2 phi", "1.5 % of cos 2 phi", [](Direction, Direction i) {
     return 0.2f * (1 + 0.015f * std::cos(2 * std::atan2(i.y, i.x)));
   }));
@@ -281,7 +297,8 @@ void add_manners(std::vector<HardFunction>& list) {
   list.push_back({"stateful", "grows by 1e-6 with every call",
                   [] {
                     const auto calls = std::make_shared<std::atomic<int>>(0);
-                    return AnyBrdf([calls](Direction, Direction) { return 0.2f + 1e-6f * float((*calls)++); });
+                    return AnyBrdf(
+                        [calls](Direction, Direction) { return 0.2f + 1e-6f * float((*calls)++); });
                   },
                   true});
   list.push_back(refused("throwing", "throws where cos_i < 0.01", [](Direction, Direction i) {

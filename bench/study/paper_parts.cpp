@@ -84,7 +84,7 @@ Draws jittered(const AnyBrdf& f, Direction wo, int side, Pcg32& u) {
     const float phi = 2 * pi * (float(i / side) + to_unit_float(u())) / float(side);
     const float r = sqrt(max(0.f, 1 - z * z));
     const Direction wi{r * cos(phi), r * sin(phi), z};
-    draws.push_back({wi, 1 / (2 * pi), scaled(eval(f, wo, wi), 2 * pi * z / float(side * side))});
+    draws.push_back({wi, 1 / (2 * pi), scaled_value(eval(f, wo, wi), 2 * pi * z / float(side * side))});
   }
   return draws;
 }
@@ -173,7 +173,7 @@ void show_few_against_many() {
         UniformBits u{Pcg32(g + 1, 8)};
         Draws draws(100);
         draws.resize(paper.sample_n(wo, u, draws));
-        for (auto& d : draws) d.weight = scaled(d.weight, 1.f / 100);
+        for (auto& d : draws) d.weight = scaled_value(d.weight, 1.f / 100);
         return draws;
       };
       const double scale = light.mean * albedo;

@@ -101,7 +101,7 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
     const float *a = cell(*this, ih, id, c.p.low), *b = cell(*this, ih, id, c.p.high);
     const auto mix = [&](int k) {
       bits |= std::bit_cast<std::uint32_t>(a[k]) | std::bit_cast<std::uint32_t>(b[k]);
-      return weight * lerp(c.p.fraction, a[k], b[k]);
+      return weight * linear_mix(c.p.fraction, a[k], b[k]);
     };
     sum = sum + Rgb{mix(0), mix(1), mix(2)};
   };
@@ -112,7 +112,7 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
   if (bits >> 31U == 0) return sum;
   const auto mean = [&](int k) {
     const Measured m = measured(*this, c, k);
-    if (!(m.missing > 0)) return channel(sum, k);
+    if (!(m.missing > 0)) return channel_value(sum, k);
     return m.weight > 0 ? m.sum / m.weight : 0;
   };
   return {mean(0), mean(1), mean(2)};

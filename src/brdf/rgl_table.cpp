@@ -24,7 +24,7 @@ GridPosition locate(float u, int size) {
 float interpolate(const std::vector<float>& table, float u) {
   const GridPosition p = locate(u, int(table.size()));
   const float* node = table.data() + p.node;
-  return lerp(p.fraction, node[0], node[1]);
+  return linear_mix(p.fraction, node[0], node[1]);
 }
 
 Rgb clipped(Rgb f) { return {max(f.r, 0.f), max(f.g, 0.f), max(f.b, 0.f)}; }

@@ -110,25 +110,25 @@ class BorderPen {
 
 }  // namespace
 
-std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo, double x,
+std::string cell_borders(const std::vector<TreeSplit>& nodes, const Domain& domain, Direction wo, double x,
                          double y, double radius, const DiskImage& background, const Axis& range) {
   BorderPen pen(domain, wo, {x, y, radius}, background, range);
   // Each inner node draws the line that halves its box: every border once. The edges of the square are no
   // borders where a leaf continues beyond them: y = 0 of a half square is the pole, and across x = -1 and 1,
   // the plane of incidence, lies the leaf's own mirror image. In a full square it is another leaf's.
-  std::vector<Cell> boxes{{-1, 1, domain.half ? 0.f : -1.f, 1}};
-  for (const Split split : nodes) {
-    const Cell c = boxes.back();
+  std::vector<SquareCell> boxes{{-1, 1, domain.half ? 0.f : -1.f, 1}};
+  for (const TreeSplit split : nodes) {
+    const SquareCell c = boxes.back();
     boxes.pop_back();
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       if (domain.half || c.y0 < 0) continue;
       for (const float edge : {-1.f, 1.f}) {
         if (c.x0 == edge || c.x1 == edge) pen.draw({edge, c.y0}, {edge, c.y1});
       }
       continue;
     }
-    Cell lower_half = c, upper_half = c;
-    const bool along_x = split == Split::x;
+    SquareCell lower_half = c, upper_half = c;
+    const bool along_x = split == TreeSplit::x;
     const Vec2<float> centre{0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)};
     (along_x ? lower_half.x1 : lower_half.y1) = along_x ? centre.x : centre.y;
     (along_x ? upper_half.x0 : upper_half.y0) = along_x ? centre.x : centre.y;

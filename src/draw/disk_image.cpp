@@ -29,12 +29,12 @@ double total(const std::vector<std::uint32_t>& mass) {
 }
 
 // A leaf's share of the square.
-double share(const Cell& c, const Domain& domain) {
+double share(const SquareCell& c, const Domain& domain) {
   return double(c.x1 - c.x0) * double(c.y1 - c.y0) / (domain.half ? 2.0 : 4.0);
 }
 
 // volume * probability / share * shape / projected_area of the leaf that holds wi.
-DiskImage tree_image(const Tree& tree, const Domain& domain, Direction wo, int size, double volume) {
+DiskImage tree_image(const CanonicalTree& tree, const Domain& domain, Direction wo, int size, double volume) {
   const LeafFinder finder(tree.nodes, domain);
   const double scale = volume / total(tree.mass);
   return disk_image(
@@ -115,8 +115,8 @@ std::size_t slab_of(const Partition& partition, Direction wo) {
   return find_slab(partition, {&theta_o, 1});
 }
 
-float leaf_shape(const Tree& tree, const LeafFinder::Leaf& leaf, Vec2<float> p) {
-  const Cell& c = leaf.cell;
+float leaf_shape(const CanonicalTree& tree, const LeafFinder::Leaf& leaf, Vec2<float> p) {
+  const SquareCell& c = leaf.cell;
   const float s = 2 * (p.x - c.x0) / (c.x1 - c.x0) - 1, t = 2 * (p.y - c.y0) / (c.y1 - c.y0) - 1;
   return (1 + float(tree.slope_x[leaf.index]) / 128 * s) * (1 + float(tree.slope_y[leaf.index]) / 128 * t);
 }
@@ -167,16 +167,16 @@ std::string disk_raster(const DiskImage& image, const Axis& range, double x, dou
          "\n";
 }
 
-LeafFinder::LeafFinder(const std::vector<Split>& nodes, const Domain& domain)
+LeafFinder::LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain)
     : y0_(domain.half ? 0.f : -1.f) {
   // Preorder: an inner node's upper child follows the whole lower subtree. Read backwards, the starts of
   // finished subtrees lie on a stack, the lower one on top.
   nodes_.resize(nodes.size());
   std::vector<std::size_t> starts;
-  auto leaves = std::size_t(std::count(nodes.begin(), nodes.end(), Split::leaf));
+  auto leaves = std::size_t(std::count(nodes.begin(), nodes.end(), TreeSplit::leaf));
   for (std::size_t i = nodes.size(); i-- > 0;) {
-    if (nodes[i] == Split::leaf) {
-      nodes_[i] = {Split::leaf, --leaves};
+    if (nodes[i] == TreeSplit::leaf) {
+      nodes_[i] = {TreeSplit::leaf, --leaves};
     } else {
       if (starts.size() < 2) throw Error("the tree is not complete", "leaf finder", "validate() the sampler");
       starts.pop_back();
@@ -189,10 +189,10 @@ LeafFinder::LeafFinder(const std::vector<Split>& nodes, const Domain& domain)
 }
 
 LeafFinder::Leaf LeafFinder::find(Vec2<float> p) const {
-  Cell c{-1, 1, y0_, 1};
+  SquareCell c{-1, 1, y0_, 1};
   std::size_t i = 0;
-  while (nodes_[i].split != Split::leaf) {
-    const bool along_x = nodes_[i].split == Split::x;
+  while (nodes_[i].split != TreeSplit::leaf) {
+    const bool along_x = nodes_[i].split == TreeSplit::x;
     float& lo = along_x ? c.x0 : c.y0;
     float& hi = along_x ? c.x1 : c.y1;
     const float middle = 0.5f * (lo + hi);

@@ -10,20 +10,20 @@ namespace reflectree::draw {
 
 Figure square_figure(const SamplerData& data, Direction wo) {
   const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
-  const std::vector<Cell> cells = leaf_cells(tree.nodes, data.domain);
+  const std::vector<SquareCell> cells = leaf_cells(tree.nodes, data.domain);
   const LeafFinder finder(tree.nodes, data.domain);
   double mass = 0, hi = 0, lo = 1e300;
   for (const std::uint32_t m : tree.mass) mass += m;
   const auto bound = [&](Vec2<float> p) {
     const LeafFinder::Leaf leaf = finder.find(p);
-    const Cell& c = leaf.cell;
+    const SquareCell& c = leaf.cell;
     const double area = double(c.x1 - c.x0) * double(c.y1 - c.y0) / (data.domain.half ? 2 : 4);
     return double(tree.volume) * tree.mass[leaf.index] / mass / area * double(leaf_shape(tree, leaf, p));
   };
-  for (const Cell& c : cells) {
+  for (const SquareCell& c : cells) {
     for (const float x : {0.01f, 0.99f}) {
       for (const float y : {0.01f, 0.99f}) {
-        const double b = bound({lerp(x, c.x0, c.x1), lerp(y, c.y0, c.y1)});
+        const double b = bound({linear_mix(x, c.x0, c.x1), linear_mix(y, c.y0, c.y1)});
         hi = std::max(hi, b);
         lo = std::min(lo, b);
       }
@@ -42,7 +42,7 @@ Figure square_figure(const SamplerData& data, Direction wo) {
   Axis unit = range;
   unit.from = 0;
   unit.to = 1;
-  for (const Cell& c : cells) {
+  for (const SquareCell& c : cells) {
     const double middle = unit.at(bound({0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)}));
     figure.body += cell_rectangle(c, place, middle > 0.62 ? "cell-bright" : "cell-night");
   }

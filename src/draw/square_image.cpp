@@ -28,7 +28,7 @@ std::string square_raster(const std::function<double(Vec2<float>)>& g, const Axi
          "\n";
 }
 
-std::string cell_rectangle(const Cell& cell, const SquarePlace& place, std::string_view css_class) {
+std::string cell_rectangle(const SquareCell& cell, const SquarePlace& place, std::string_view css_class) {
   const double left = place.px(double(cell.x0)), top = place.py(double(cell.y1));
   return rectangle(left, top, place.px(double(cell.x1)) - left, place.py(double(cell.y0)) - top, css_class);
 }

@@ -56,7 +56,7 @@ void probe(MeasuredFacts& facts, const Judge& judge) {
 template <class F>
 void probe_sign(MeasuredFacts& facts, const F& f) {
   probe(facts, [&f](const ShadingGeometry<float>& g, int c) {
-    return channel(f.unclipped(g), c) < 0 ? Verdict::clipped : Verdict::sound;
+    return channel_value(f.unclipped(g), c) < 0 ? Verdict::clipped : Verdict::sound;
   });
 }
 
@@ -85,7 +85,7 @@ MeasuredFacts merl_facts(ByteView bytes, const std::string& path, TableLookup lo
   facts.not_measured =
       std::uint64_t(std::count_if(table.rgb.begin(), table.rgb.end(), [](float v) { return v < 0; }));
   probe(facts, [&table](const ShadingGeometry<float>& g, int c) {
-    const float share = channel(table.unmeasured(g), c);
+    const float share = channel_value(table.unmeasured(g), c);
     return share <= 0 ? Verdict::sound : share >= 1 ? Verdict::dark : Verdict::bridged;
   });
   return facts;

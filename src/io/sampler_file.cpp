@@ -37,7 +37,7 @@ void append_floats(Bytes& out, std::span<const float> values) {
 
 void append_partition(Bytes& out, const Partition& partition) {
   append_u32(out, std::uint32_t(partition.coordinates.size()));
-  for (const Coordinate& c : partition.coordinates) {
+  for (const KnownCoordinate& c : partition.coordinates) {
     append_words(out, c.name), append_f32(out, c.lo), append_f32(out, c.hi);
   }
   append_u32(out, std::uint32_t(partition.axis.size()));
@@ -45,7 +45,7 @@ void append_partition(Bytes& out, const Partition& partition) {
   append_floats(out, partition.split);
 }
 
-void append_tree(Bytes& out, const Tree& tree) {
+void append_tree(Bytes& out, const CanonicalTree& tree) {
   append_u32(out, std::uint32_t(tree.nodes.size()));
   for (std::size_t i = 0; i < tree.nodes.size(); i += 4) {
     std::uint8_t four = 0;
@@ -101,7 +101,7 @@ std::vector<float> read_floats(ByteReader& in) {
 Partition read_partition(ByteReader& in) {
   Partition partition;
   partition.coordinates.resize(read_count(in, 12, max_coordinates));
-  for (Coordinate& c : partition.coordinates) {
+  for (KnownCoordinate& c : partition.coordinates) {
     c.name = read_words(in), c.lo = read_float(in), c.hi = read_float(in);
   }
   const ByteView axis = in.take(read_count(in, 1));
@@ -110,11 +110,11 @@ Partition read_partition(ByteReader& in) {
   return partition;
 }
 
-void read_tree(ByteReader& in, Tree& tree) {
+void read_tree(ByteReader& in, CanonicalTree& tree) {
   const std::uint32_t nodes = in.u32();
   const ByteView packed = in.take((std::uint64_t(nodes) + 3) / 4);
   tree.nodes.resize(nodes);
-  for (std::size_t i = 0; i < nodes; ++i) tree.nodes[i] = Split((packed[i / 4] >> (2 * (i % 4))) & 3U);
+  for (std::size_t i = 0; i < nodes; ++i) tree.nodes[i] = TreeSplit((packed[i / 4] >> (2 * (i % 4))) & 3U);
   if (nodes % 4 != 0 && (packed.back() >> (2 * (nodes % 4))) != 0) {
     throw Error("damaged: bits after the last node", in.where(), fetch_again);
   }
@@ -287,7 +287,8 @@ Bytes encode_sampler(const SamplerData& data) {
   // What most samplers have not: an older reader must not overlook a scale.
   if (data.target.scale != 1) chunk("SCAL", [&](Bytes& p) { append_f32(p, data.target.scale); });
   if (!data.probes.channels.empty())
-    chunk("PRCH", [&](Bytes& p) { append_floats(p, data.probes.channels); }, optional_flag);
+    chunk(
+        "PRCH", [&](Bytes& p) { append_floats(p, data.probes.channels); }, optional_flag);
   if (!data.report.notes.empty()) {
     const auto notes = [&](Bytes& p) {
       append_u32(p, std::uint32_t(data.report.notes.size()));

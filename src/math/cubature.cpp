@@ -40,20 +40,20 @@ constexpr std::array<Vec2<double>, rule_points> nodes = {{{0, 0},
                                                           {l5, l5}}};
 
 struct Region {
-  Rectangle box;
+  CubatureBox box;
   double value = 0, error = 0;
   bool split_x = true;
 };
 
 bool smaller_error(const Region& a, const Region& b) { return a.error < b.error; }
 
-void append_points(const Rectangle& r, std::vector<Vec2<double>>& points) {
+void append_points(const CubatureBox& r, std::vector<Vec2<double>>& points) {
   const double cx = 0.5 * (r.x0 + r.x1), cy = 0.5 * (r.y0 + r.y1);
   const double hx = 0.5 * (r.x1 - r.x0), hy = 0.5 * (r.y1 - r.y0);
   for (const auto& n : nodes) points.push_back({cx + hx * n.x, cy + hy * n.y});
 }
 
-void apply_rule(const double* f, const Rectangle& domain, Region& region) {
+void apply_rule(const double* f, const CubatureBox& domain, Region& region) {
   const std::array<double, 5> orbit = {f[0], f[1] + f[2] + f[3] + f[4], f[5] + f[6] + f[7] + f[8],
                                        f[9] + f[10] + f[11] + f[12], f[13] + f[14] + f[15] + f[16]};
   double degree7 = 0, degree5 = 0;
@@ -61,7 +61,7 @@ void apply_rule(const double* f, const Rectangle& domain, Region& region) {
     degree7 += weight7[i] * orbit[i];
     degree5 += weight5[i] * orbit[i];
   }
-  const Rectangle& r = region.box;
+  const CubatureBox& r = region.box;
   const double width = r.x1 - r.x0, height = r.y1 - r.y0;
   region.value = width * height * degree7;
   region.error = width * height * std::abs(degree7 - degree5);
@@ -74,7 +74,7 @@ void apply_rule(const double* f, const Rectangle& domain, Region& region) {
 
 class Cubature {
  public:
-  Cubature(const Integrand& f, const Rectangle& domain, const CubatureOptions& options)
+  Cubature(const Integrand& f, const CubatureBox& domain, const CubatureOptions& options)
       : f_(f), domain_(domain), options_(options) {}
 
   CubatureResult run() {
@@ -142,7 +142,7 @@ class Cubature {
   bool halve(const Region& parent) {
     constexpr double narrowest = 0x1p-44;
     Region lower{parent.box}, upper{parent.box};
-    const Rectangle& r = parent.box;
+    const CubatureBox& r = parent.box;
     if (parent.split_x) {
       if (r.x1 - r.x0 < narrowest * (domain_.x1 - domain_.x0)) return false;
       lower.box.x1 = upper.box.x0 = 0.5 * (r.x0 + r.x1);
@@ -196,23 +196,23 @@ class Cubature {
   static constexpr std::size_t max_batch = 2048;  // regions in one call of the integrand
 
   const Integrand& f_;
-  Rectangle domain_;
+  CubatureBox domain_;
   CubatureOptions options_;
   std::vector<Region> heap_, exhausted_, parents_, children_;
   std::vector<Vec2<double>> points_;
   std::vector<double> values_;
-  Sum value_, error_;
+  CompensatedSum value_, error_;
   std::size_t evaluations_ = 0;
   bool finite_ = true;
 };
 
 }  // namespace
 
-CubatureResult cubature(const Integrand& f, const Rectangle& domain, const CubatureOptions& options) {
+CubatureResult cubature(const Integrand& f, const CubatureBox& domain, const CubatureOptions& options) {
   return Cubature(f, domain, options).run();
 }
 
-CubatureResult cubature(const Integrand& f, const Rectangle& domain, const CubatureOptions& options,
+CubatureResult cubature(const Integrand& f, const CubatureBox& domain, const CubatureOptions& options,
                         std::vector<CubatureRegion>& regions) {
   Cubature work(f, domain, options);
   const CubatureResult result = work.run();

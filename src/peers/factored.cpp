@@ -48,7 +48,7 @@ FactoredDensity::FactoredDensity(SquareChart chart, std::vector<float> theta_o, 
 
 float FactoredDensity::weight(std::size_t angle, float t, std::size_t term) const {
   const float* w = weight_.data() + angle * u_.size() + term;
-  return lerp(t, w[0], w[u_.size()]);
+  return linear_mix(t, w[0], w[u_.size()]);
 }
 
 float FactoredDensity::pdf_square(std::size_t angle, float t, Vec2<float> p) const {

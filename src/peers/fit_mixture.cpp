@@ -10,7 +10,7 @@ namespace reflectree {
 namespace {
 
 struct Candidates {
-  std::vector<Lobe> lobes;
+  std::vector<ProposalLobe> lobes;
   std::vector<double> cosine_weights;
 };
 
@@ -33,7 +33,7 @@ std::vector<double> losses(const AnyBrdf& f, Target target, const FitOptions& o,
                            std::size_t row) {
   const double theta = row_theta_o(row, std::size_t(o.thetas));
   const Direction wo{float(std::sin(theta)), 0, float(std::cos(theta))};
-  const Lobe cosine;
+  const ProposalLobe cosine;
   UniformBits u(Pcg32(o.seed, row));
   const std::size_t n = c.lobes.size();
   std::vector<Direction> wi;
@@ -72,10 +72,10 @@ std::vector<double> losses(const AnyBrdf& f, Target target, const FitOptions& o,
 }
 
 std::vector<WeightedLobe> best(const std::vector<double>& loss, const Candidates& c) {
-  if (loss.empty()) return {{1, Lobe{}}};
+  if (loss.empty()) return {{1, ProposalLobe{}}};
   const auto at = std::size_t(std::min_element(loss.begin(), loss.end()) - loss.begin());
   const auto w = float(c.cosine_weights[at % c.cosine_weights.size()]);
-  return {{w, Lobe{}}, {1 - w, c.lobes[at / c.cosine_weights.size()]}};
+  return {{w, ProposalLobe{}}, {1 - w, c.lobes[at / c.cosine_weights.size()]}};
 }
 
 }  // namespace

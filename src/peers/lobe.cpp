@@ -17,11 +17,11 @@ Direction unit_or_up(Direction w) {
   const float l = length(w);
   return l > 0 ? (1 / l) * w : Direction{0, 0, 1};
 }
-Direction power_axis(const Lobe& lobe, Direction wo) {
+Direction power_axis(const ProposalLobe& lobe, Direction wo) {
   return unit_or_up({lobe.axis.x * wo.x, lobe.axis.y * wo.y, lobe.axis.z * wo.z});
 }
 
-Direction sample_power(const Lobe& lobe, Direction wo, float u1, float u2) {
+Direction sample_power(const ProposalLobe& lobe, Direction wo, float u1, float u2) {
   const float v = -std::expm1(std::log(u1) / (lobe.a + 1)), r = sqrt(v * (2 - v)), phi = 2 * pi * u2;
   return to_world(frame_from_normal(power_axis(lobe, wo)), Direction{r * cos(phi), r * sin(phi), 1 - v});
 }
@@ -34,13 +34,13 @@ Direction sample_ggx_half(float alpha, Direction wo, float u1, float u2) {
   return unit_or_up({alpha * h.x, alpha * h.y, max(h.z, 0.f)});
 }
 
-Direction sample_gaussian_half(const Lobe& lobe, float u1, float u2) {
+Direction sample_gaussian_half(const ProposalLobe& lobe, float u1, float u2) {
   const float r = sqrt(-std::log(u1)), phi = 2 * pi * u2;
   return normalize(Direction{lobe.a * r * cos(phi), lobe.b * r * sin(phi), 1});
 }
 
 // Equations 9 and 10 of the paper, all quadrants at once.
-Direction sample_half_power(const Lobe& lobe, float u1, float u2) {
+Direction sample_half_power(const ProposalLobe& lobe, float u1, float u2) {
   const float psi = 2 * pi * u2;
   const float x = sqrt(lobe.b + 1) * cos(psi), y = sqrt(lobe.a + 1) * sin(psi), r2 = x * x + y * y;
   const float exponent = (lobe.a * x * x + lobe.b * y * y) / r2;
@@ -48,7 +48,7 @@ Direction sample_half_power(const Lobe& lobe, float u1, float u2) {
   return {s * x, s * y, 1 - v};
 }
 
-float half_pdf(const Lobe& lobe, Direction wh) {
+float half_pdf(const ProposalLobe& lobe, Direction wh) {
   const float hz2 = max(sqr(wh.z), 1e-18f);
   if (lobe.kind == LobeKind::gaussian) {
     const float slope2 = (sqr(wh.x / lobe.a) + sqr(wh.y / lobe.b)) / hz2;
@@ -61,7 +61,7 @@ float half_pdf(const Lobe& lobe, Direction wh) {
 
 }  // namespace
 
-std::optional<Direction> Lobe::sample(Direction wo, UniformBits& u) const {
+std::optional<Direction> ProposalLobe::sample(Direction wo, UniformBits& u) const {
   const float u1 = positive_unit(u), u2 = to_unit_float(u());
   Direction wi;
   if (kind == LobeKind::uniform || kind == LobeKind::cosine) {
@@ -81,7 +81,7 @@ std::optional<Direction> Lobe::sample(Direction wo, UniformBits& u) const {
   return wi;
 }
 
-float Lobe::pdf(Direction wo, Direction wi) const {
+float ProposalLobe::pdf(Direction wo, Direction wi) const {
   if (!(wo.z > 0 && wi.z > 0)) return 0;
   if (kind == LobeKind::uniform) return 1 / (2 * pi);
   if (kind == LobeKind::cosine) return wi.z / pi;

@@ -122,7 +122,7 @@ std::optional<DirectionSample<Spectrum>> PaperSampler::finished(const Reading& r
   const bool own = r.wo == tree.wo && !(r.shares[1] > 0);
   const double pdf = own ? double(target_(value)) * double(wi.z) / tree.albedo() : density(r, wi);
   return DirectionSample<Spectrum>{fixed_wo_ ? wi : turned(wi, wo), float(pdf),
-                                   scaled(value, float(double(wi.z) / pdf))};
+                                   scaled_value(value, float(double(wi.z) / pdf))};
 }
 
 std::optional<DirectionSample<Spectrum>> PaperSampler::draw(Direction wo, UniformBits& u) const {

@@ -26,8 +26,8 @@ struct Term {
 // For one elevation of wo; empty: no sampler was published. Weights are albedos.
 std::vector<WeightedLobe> lobes_of(const Term& p, float cos_theta_o) {
   const std::string_view m = p.info.name;
-  const WeightedLobe cosine{mean(p("kd")), Lobe{}};
-  if (m == "lambert" || m == "oren_nayar") return {{mean(p("rho")), Lobe{}}};
+  const WeightedLobe cosine{mean(p("kd")), ProposalLobe{}};
+  if (m == "lambert" || m == "oren_nayar") return {{mean(p("rho")), ProposalLobe{}}};
   if (m == "ggx") return {{mean(p("f0")), {LobeKind::ggx, p("alpha").r}}};
   if (m == "phong") return {cosine, {mean(p("ks")), {LobeKind::power, p("n").r}}};
   if (m == "ward") return {cosine, {mean(p("ks")), {LobeKind::gaussian, p("alpha_x").r, p("alpha_y").r}}};
@@ -36,19 +36,19 @@ std::vector<WeightedLobe> lobes_of(const Term& p, float cos_theta_o) {
     return {cosine, {specular, {LobeKind::gaussian, a, a}}};
   }
   if (m == "ashikhmin_shirley") {  // half and half, section 3 of the paper
-    return {{0.5f, Lobe{}}, {0.5f, {LobeKind::half_power, p("n_x").r, p("n_y").r}}};
+    return {{0.5f, ProposalLobe{}}, {0.5f, {LobeKind::half_power, p("n_x").r, p("n_y").r}}};
   }
   if (m == "lafortune") {  // a lobe a channel: axes and exponents may differ
     std::vector<WeightedLobe> lobes{cosine};
     for (int c = 0; c < 3; ++c) {
-      const auto of = [&](std::string_view name) { return channel(p(name), c); };
+      const auto of = [&](std::string_view name) { return channel_value(p(name), c); };
       lobes.push_back({of("ks") / 3, {LobeKind::power, of("n"), 1, {of("cx"), of("cy"), of("cz")}}});
     }
     return lobes;
   }
   if (m == "plastic") {  // by Fresnel reflectance of wo, as rough plastics are shipped
     const float f0 = p("f0").r, fresnel = f0 + (1 - f0) * std::pow(1 - cos_theta_o, 5.f);
-    return {{(1 - fresnel) * mean(p("kd")), Lobe{}}, {fresnel, {LobeKind::ggx, p("alpha").r}}};
+    return {{(1 - fresnel) * mean(p("kd")), ProposalLobe{}}, {fresnel, {LobeKind::ggx, p("alpha").r}}};
   }
   return {};
 }

@@ -73,7 +73,7 @@ std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std
         const float at = p.x * float(ndf_size - 1);
         const auto k = std::size_t(std::min(int(at), ndf_size - 2));
         visible.push_back(chart_point(SquareChart::half_vector, wo, p).jacobian *
-                          lerp(at - float(k), d[k], d[k + 1]));
+                          linear_mix(at - float(k), d[k], d[k + 1]));
       }
     }
     BilinearTable normals(visible, warp_width, warp_height);

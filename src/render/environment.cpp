@@ -39,7 +39,7 @@ constexpr std::size_t block = 64;  // of look-ups whose waits for memory overlap
 
 }  // namespace
 
-Environment::Environment(const Image& p, Frame<float> frame, float scale, const std::string& where) {
+Environment::Environment(const Image& p, LocalFrame<float> frame, float scale, const std::string& where) {
   if (p.width < 1 || p.height < 1 || p.channels.size() < 3) {
     throw Error("a sky needs red, green and blue", where, "use another picture");
   }

@@ -123,7 +123,7 @@ void add_sample(const Integrator& integrator, const Scene& scene, const Tile& ti
     for (int x = tile.x0; x < tile.x1; ++x, ++n) {
       double* sums = film.sums.data() + 6 * pixel(x, y);
       for (int k = 0; k < 3; ++k) {
-        const auto value = double(channel(found[n], k));
+        const auto value = double(channel_value(found[n], k));
         sums[k] += value, sums[k + 3] += value * value;
       }
     }

@@ -70,7 +70,7 @@ struct RoughPlastic final : Each<RoughPlastic> {
   float transmittance(float cosine) const {
     const float x = cosine * float(nodes - 1);
     const std::size_t i = std::min(std::size_t(x), nodes - 2);
-    return lerp(x - float(i), through[i], through[i + 1]);
+    return linear_mix(x - float(i), through[i], through[i + 1]);
   }
   float chance(Direction wo) const {
     const float t = transmittance(wo.z), s = (1 - t) * specular_weight, d = t * (1 - specular_weight);

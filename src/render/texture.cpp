@@ -57,7 +57,7 @@ Rgb mean(const Texture& texture) {
   const Image& p = *texture.picture;
   for (int y = 0; y < p.height; ++y) {
     for (int x = 0; x < p.width; ++x) {
-      for (int k = 0; k < 3; ++k) sum[k] += double(channel(texel(p, x, y), k));
+      for (int k = 0; k < 3; ++k) sum[k] += double(channel_value(texel(p, x, y), k));
     }
   }
   const double n = double(p.width) * double(p.height);

@@ -87,7 +87,8 @@ struct Starts {
     const float row = sine / (sine + cosine) * rows, column = u * columns;
     const int i = std::min(int(row), rows - 1), j = std::min(int(column), columns - 1);
     const float t = column - float(j);
-    return lerp(row - float(i), lerp(t, x[i][j], x[i][j + 1]), lerp(t, x[i + 1][j], x[i + 1][j + 1]));
+    return linear_mix(row - float(i), linear_mix(t, x[i][j], x[i][j + 1]),
+                      linear_mix(t, x[i + 1][j], x[i + 1][j + 1]));
   }
 };
 const Starts starts;

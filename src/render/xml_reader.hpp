@@ -68,7 +68,7 @@ class XmlReader {
   Rgb colour(Node n, const char* name, Rgb otherwise, ColourOf of) const;
   Matrix transform(Node n) const;
   // Where the property's transform turns the axes to. Throws Error where it scales them.
-  Frame<float> rotation(Node n, const char* name) const;
+  LocalFrame<float> rotation(Node n, const char* name) const;
 
  private:
   std::string place(std::ptrdiff_t offset) const;

@@ -89,7 +89,7 @@ class SceneReader {
       set_environment(n, Environment(xml_.colour(n, "radiance", white, ColourOf::light)));
     } else if (type == "envmap") {
       xml_.only(n, {"filename", "scale", "to_world"});
-      const Frame<float> frame = xml_.rotation(n, "to_world");
+      const LocalFrame<float> frame = xml_.rotation(n, "to_world");
       const std::string file = xml_.file(n);
       const float scale = float(xml_.property(n, "scale", 1));
       if (!(scale >= 0)) xml_.fail(n, "the sky's scale is negative", "write a number from 0 on");

@@ -101,7 +101,7 @@ void read_sensor(const XmlReader& xml, Node n, Scene& scene) {
   xml.property(n, "focus_distance", 0);  // of a lens; a pinhole has none
   const double aspect = double(scene.width) / scene.height, t = tangent(xml, n, aspect);
   const Matrix m = xml.transform(XmlReader::named(n, "to_world"));
-  const Frame<float> frame = xml.rotation(n, "to_world");
+  const LocalFrame<float> frame = xml.rotation(n, "to_world");
   Camera& c = scene.camera;
   c = {apply(m, {}, 1), frame.s, frame.t, frame.n, float(t), float(t / aspect)};
   c.shift_x = float(xml.property(n, "principal_point_offset_x", 0));

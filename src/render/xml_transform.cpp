@@ -74,7 +74,7 @@ Matrix XmlReader::transform(Node n) const {
   return all;
 }
 
-Frame<float> XmlReader::rotation(Node n, const char* name) const {
+LocalFrame<float> XmlReader::rotation(Node n, const char* name) const {
   const Node c = named(n, name);
   const Matrix m = transform(c);
   const auto axis = [&](Vec3<double> v) { return apply_double(m, v, 0); };

@@ -25,7 +25,7 @@ float albedo_at(const AlbedoTable& table, float c) {
     count -= half;
   }
   const float t = (c - x[i]) / (x[i + 1] - x[i]);
-  return lerp(t, table.albedo[i], table.albedo[i + 1]);
+  return linear_mix(t, table.albedo[i], table.albedo[i + 1]);
 }
 
 namespace detail {
@@ -40,7 +40,7 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 struct Panel {
   double lo, hi;
   int level = 0;
-  bool jump = false;  // as narrow as it gets: the albedo leaps across it
+  bool jump = false;                          // as narrow as it gets: the albedo leaps across it
   std::array<double, 2> predicted{inf, inf};  // at the odd nodes, by the panel that was halved
 };
 double node_of(const Panel& p, int i) {
@@ -106,13 +106,19 @@ std::vector<double> first_borders(const BrdfTraits& traits) {
   return borders;
 }
 
-// The table under construction: panels, the integrals at their nodes, and the error that all are content with.
+// The table under construction: panels, the integrals at their nodes, and the error that all are content
+// with.
 class TableBuilder {
  public:
   TableBuilder(const Field& field, float relative_error, const std::vector<float>& jumps, const Host& host,
                Effort& effort)
-      : field_(field), host_(host), effort_(effort), error_(double(relative_error)),
-        known_(field.f.traits().theta_o_factor), start_(effort.evaluations), budget_(effort.limit / 3),
+      : field_(field),
+        host_(host),
+        effort_(effort),
+        error_(double(relative_error)),
+        known_(field.f.traits().theta_o_factor),
+        start_(effort.evaluations),
+        budget_(effort.limit / 3),
         apart_{0, effort.limit} {
     std::vector<double> borders = first_borders(field.f.traits());
     for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
@@ -130,8 +136,8 @@ class TableBuilder {
   // Refines until every panel is smooth enough.
   void refine() { refine(true); }
 
-  // Integrals at random places inside the panels, by another cubature: panels that miss them are refined, a few
-  // times; what is missed in the end, the table states.
+  // Integrals at random places inside the panels, by another cubature: panels that miss them are refined, a
+  // few times; what is missed in the end, the table states.
   void check(std::uint64_t seed) {
     constexpr int rounds = 4;
     Pcg32 u(seed, 19);
@@ -143,11 +149,12 @@ class TableBuilder {
       for (const Panel& panel : fresh) {
         if (panel.jump || panel.hi - panel.lo < 1e-5) continue;
         for (int k = 0; k < (panel.hi > 1.48 ? 3 : 1); ++k) {
-          cosines.push_back(cosine_of(lerp(to_unit_double(u()), panel.lo, panel.hi)));
+          cosines.push_back(cosine_of(linear_mix(to_unit_double(u()), panel.lo, panel.hi)));
           checked.push_back(panel);
         }
       }
-      std::vector<double> misses = misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress});
+      std::vector<double> misses =
+          misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
@@ -171,9 +178,12 @@ class TableBuilder {
       // A half that the parabola finds smooth was so before it was halved: trust is what was wrong here.
       std::vector<Panel> kept;
       for (const Panel& p : closed_) {
-        const bool again = std::any_of(missed.begin(), missed.end(), [&](const Panel& m) { return m.lo == p.lo; });
-        if (!again) kept.push_back(p);
-        else halve(p, open_);
+        const bool again =
+            std::any_of(missed.begin(), missed.end(), [&](const Panel& m) { return m.lo == p.lo; });
+        if (!again)
+          kept.push_back(p);
+        else
+          halve(p, open_);
       }
       // The integrals themselves may be what was wrong.
       rim_ = true;
@@ -192,8 +202,10 @@ class TableBuilder {
     const Factor by = [this](double theta_o) { return factor(theta_o); };
     for (const Panel& panel : closed_) {
       const std::array<double, 5> v = values_of(panel);
-      if (panel.jump) entries[cosine_of(panel.hi)] = max(v[4] * factor(panel.hi), 0.);
-      else tabulate(panel, v, by, 0, 4, interpolation_error(), 8, entries);
+      if (panel.jump)
+        entries[cosine_of(panel.hi)] = max(v[4] * factor(panel.hi), 0.);
+      else
+        tabulate(panel, v, by, 0, 4, interpolation_error(), 8, entries);
     }
     AlbedoTable table;
     for (const auto& [c, a] : entries) table.cos_theta_o.push_back(c), table.albedo.push_back(float(a));
@@ -205,7 +217,8 @@ class TableBuilder {
  private:
   static constexpr int deepest = 10;
   static constexpr double accepted = 0.7;  // of the error, between table and check
-  static constexpr float grazing_cosine = 1.745e-3f;  // of 89.9 degrees; beyond, ten times the error is allowed
+  static constexpr float grazing_cosine =
+      1.745e-3f;  // of 89.9 degrees; beyond, ten times the error is allowed
   static constexpr float progress = 0.1f, progress_end = 0.4f;
 
   double cubature_error() const { return 0.25 * error_; }
@@ -286,9 +299,9 @@ class TableBuilder {
         (pilot ? pilots : fresh).push_back(node_of(panel, i));
       }
     }
-    // A function with steps, or with the noise of floats, has no albedo to four digits for any decent number of
-    // evaluations: where the first few integrals do not get there, or are too dear, all are content with what
-    // is easily had, and the table says so.
+    // A function with steps, or with the noise of floats, has no albedo to four digits for any decent number
+    // of evaluations: where the first few integrals do not get there, or are too dear, all are content with
+    // what is easily had, and the table says so.
     const std::uint64_t before_pilots = effort_.evaluations;
     integrate_nodes(pilots);
     if (worst_ > cubature_error()) error_ = min(8 * worst_, 1.);
@@ -306,7 +319,7 @@ class TableBuilder {
   double error_;
   const Factor known_;
   std::uint64_t start_, budget_;
-  Effort apart_;  // of the checks: evaluations count what the sampler is made of
+  Effort apart_;      // of the checks: evaluations count what the sampler is made of
   bool rim_ = false;  // close in on the rim: the first integrals were found wrong
   double first_ = 0, worst_ = 0, missed_ = 0, noise_ = 0;  // worst: of the integrals, as they estimate it
   std::vector<Panel> open_, closed_;

@@ -199,8 +199,9 @@ Integrals integrate(const Field& field, const std::vector<float>& cosines, const
       }
     }
     values.resize(points.size());
-    const auto done = std::count_if(integrals.begin(), integrals.end(), [](const Integral& i) { return i.done; });
-    host.progress(lerp(float(done) / float(integrals.size()), options.progress, options.progress_end));
+    const auto done =
+        std::count_if(integrals.begin(), integrals.end(), [](const Integral& i) { return i.done; });
+    host.progress(linear_mix(float(done) / float(integrals.size()), options.progress, options.progress_end));
     eval_in_parallel(field, host, effort, points, values);
     host.parallel_for(integrals.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

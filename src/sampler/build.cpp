@@ -8,8 +8,8 @@
 #include "albedo_build.hpp"
 #include "check_options.hpp"
 #include "examine.hpp"
-#include "findings.hpp"
 #include "field.hpp"
+#include "findings.hpp"
 #include "grow.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/albedo.hpp"
@@ -25,7 +25,8 @@ using namespace detail;
 
 constexpr float theta_max = 1.5707887f;  // cos = min_cos_theta_o, rounded outwards
 
-std::vector<Slab> first_slabs(const std::vector<float>& jumps, const AlbedoTable& albedo, const Field& field) {
+std::vector<Slab> first_slabs(const std::vector<float>& jumps, const AlbedoTable& albedo,
+                              const Field& field) {
   std::vector<float> borders{0, theta_max}, knots = field.f.traits().theta_o_knots;
   knots.insert(knots.end(), jumps.begin(), jumps.end());
   for (const float theta : knots) {
@@ -59,14 +60,14 @@ Partition partition_of(const std::vector<Slab>& slabs) {
   return partition;
 }
 
-std::vector<Split> preorder(const Slab& slab) {
-  std::vector<Split> order;
+std::vector<TreeSplit> preorder(const Slab& slab) {
+  std::vector<TreeSplit> order;
   std::vector<std::uint32_t> stack{0};
   while (!stack.empty()) {
     const Node& node = slab.nodes[stack.back()];
     stack.pop_back();
     order.push_back(node.split);
-    if (node.split != Split::leaf) stack.push_back(node.child + 1), stack.push_back(node.child);
+    if (node.split != TreeSplit::leaf) stack.push_back(node.child + 1), stack.push_back(node.child);
   }
   return order;
 }
@@ -81,7 +82,7 @@ double quantise(const std::vector<double>& cost, std::vector<std::uint32_t>& mas
 }
 
 // Nodes, slopes and quantised masses; returns the unit of mass. No leaf loses support, whatever its grid saw.
-double fill(Tree& tree, const Slab& slab) {
+double fill(CanonicalTree& tree, const Slab& slab) {
   tree.nodes = preorder(slab);
   std::vector<double> cost;
   for (const std::uint32_t i : leaves_in_order(slab)) {
@@ -121,7 +122,7 @@ struct Total {
 Total total_of(const Slab& slab) {
   Total total;
   for (const Node& node : slab.nodes) {
-    if (node.split == Split::leaf)
+    if (node.split == TreeSplit::leaf)
       total.cost += double(node.leaf.cost), total.ideal += double(node.leaf.ideal);
   }
   return total;
@@ -223,7 +224,7 @@ std::vector<FieldPoint> highest_places(const std::vector<Slab>& slabs) {
   for (std::size_t k = 0; k < order.size() && k < most; ++k) {
     const Leaf* highest = nullptr;
     for (const Node& node : order[k]->nodes) {
-      if (node.split == Split::leaf && (!highest || node.leaf.seen > highest->seen)) highest = &node.leaf;
+      if (node.split == TreeSplit::leaf && (!highest || node.leaf.seen > highest->seen)) highest = &node.leaf;
     }
     if (highest && highest->seen > 0) places.push_back({cos(highest->seen_theta), highest->seen_at});
   }
@@ -239,8 +240,8 @@ struct Attempt {
   CrossExamination seen;
 };
 
-Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOptions& options, Effort& effort,
-                      const Host& host, BuildReport& report) {
+Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOptions& options,
+                      Effort& effort, const Host& host, BuildReport& report) {
   Attempt attempt;
   std::vector<FieldPoint> towers;
   attempt.domain = field.domain;
@@ -256,7 +257,8 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
   Direction wi = seen.brightest_wi;
   if (field.domain.half) wi.y = abs(wi.y);
-  const FieldPoint brightest{seen.brightest_wo.z, lower(field.domain, wo_from_cosine(seen.brightest_wo.z), wi)};
+  const FieldPoint brightest{seen.brightest_wo.z,
+                             lower(field.domain, wo_from_cosine(seen.brightest_wo.z), wi)};
   attempt.seen = cross_examine(attempt.exact, apart, brightest, options.seed);
   attempt.seen.towers = std::move(towers);
   if (attempt.seen.towers.empty() && disagrees(attempt.seen, attempt.albedo))
@@ -270,7 +272,8 @@ void refuse_albedo_out_of_range(const AlbedoTable& albedo, const Target& target,
   for (const float a : albedo.albedo) largest = std::max(largest, double(a) / double(target.scale));
   if (largest <= 1e38) return;
   char what[96];
-  std::snprintf(what, sizeof what, "the albedo is %.3g, and weights of that size leave the range of float", largest);
+  std::snprintf(what, sizeof what, "the albedo is %.3g, and weights of that size leave the range of float",
+                largest);
   throw Error(what, name, "divide the function by a constant and multiply the weights by it");
 }
 
@@ -298,7 +301,8 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     const Domain domain = options.domain ? *options.domain : choose_domain(f, options, seen, ridges, host);
     const Field field{f, options.target, domain, domain.half && !seen.mirror_symmetric, ridges};
     Attempt attempt = attempt_exact(field, seen, options, effort, host, data.report);
-    if (n < max_attempts && evaluations < options.max_evaluations && disagrees(attempt.seen, attempt.albedo)) {
+    if (n < max_attempts && evaluations < options.max_evaluations &&
+        disagrees(attempt.seen, attempt.albedo)) {
       evaluations += effort.evaluations;
       if (add_ridges(ridges, field, attempt.seen)) {
         seen = examine(f, options, ridges);
@@ -322,7 +326,8 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     for (const Slab& slab : attempt.one_shot) data.one_shot.push_back(density_tree(slab));
     data.report.one_shot_variance = median_variance(attempt.one_shot);
     data.report.evaluations = evaluations + effort.evaluations;
-    data.report.notes = notes_on(attempt.exact, attempt.one_shot, attempt.albedo, options, spent || effort.spent());
+    data.report.notes =
+        notes_on(attempt.exact, attempt.one_shot, attempt.albedo, options, spent || effort.spent());
     break;
   }
   data.probes = probe_identity(f, options.target);

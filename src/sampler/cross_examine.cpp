@@ -25,10 +25,10 @@ const Slab& slab_of(const std::vector<Slab>& slabs, float theta) {
 
 const Leaf& leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain) {
   std::uint32_t i = 0;
-  while (slab.nodes[i].split != Split::leaf) {
+  while (slab.nodes[i].split != TreeSplit::leaf) {
     const std::uint32_t child = slab.nodes[i].child;
     const Box upper = box_of(slab.nodes[child + 1].leaf.cell, domain);
-    const bool up = slab.nodes[i].split == Split::x ? p.x >= upper.x0 : p.y >= upper.y0;
+    const bool up = slab.nodes[i].split == TreeSplit::x ? p.x >= upper.x0 : p.y >= upper.y0;
     i = child + std::uint32_t(up);
   }
   return slab.nodes[i].leaf;
@@ -75,7 +75,7 @@ void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain,
     const Box box = box_of(leaf.cell, domain);
     const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
                         box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
-    const float theta = lerp(to_unit_float(u()), slab.theta_lo, slab.theta_hi);
+    const float theta = linear_mix(to_unit_float(u()), slab.theta_lo, slab.theta_hi);
     points.push_back({clamp(cos(theta), min_cos_theta_o, 1.f), p});
     bounds.push_back(leaf.share * shape(leaf, box, p));
   }
@@ -83,8 +83,8 @@ void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain,
 
 }  // namespace
 
-CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& survey, const FieldPoint& brightest,
-                               std::uint64_t seed) {
+CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& survey,
+                               const FieldPoint& brightest, std::uint64_t seed) {
   constexpr std::size_t probe_count = 3U << 16U, draw_count = 1U << 16U;
   const Domain& domain = survey.field.domain;
   Pcg32 u(seed, 23);

@@ -15,16 +15,16 @@ struct Surprise {
 
 struct CrossExamination {
   std::vector<Surprise> surprises;  // the largest ratios first
-  // Means over all viewers of T / albedo, which integrates to 1, drawn from the bounds: as sample_once does, with
-  // its standard error, and as sum(V) accepted / trials, which is less where bounds are overshot.
+  // Means over all viewers of T / albedo, which integrates to 1, drawn from the bounds: as sample_once does,
+  // with its standard error, and as sum(V) accepted / trials, which is less where bounds are overshot.
   double by_bounds = 1, by_bounds_error = 0;
   double accepted = 1;
   std::vector<FieldPoint> towers;  // met by the attack
 };
 
-// Uniform and domain-drawn probes over the whole partition with the brightest pair that was met before, and draws
-// from the trees themselves.
-CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& survey, const FieldPoint& brightest,
-                               std::uint64_t seed);
+// Uniform and domain-drawn probes over the whole partition with the brightest pair that was met before, and
+// draws from the trees themselves.
+CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& survey,
+                               const FieldPoint& brightest, std::uint64_t seed);
 
 }  // namespace reflectree::detail

@@ -80,7 +80,7 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
       double cost = 0, ideal = 0, theta_cost = 0;
       float leaves = 0;
       for (const Node& node : slab.nodes) {
-        if (node.split != Split::leaf) continue;
+        if (node.split != TreeSplit::leaf) continue;
         cost += double(node.leaf.cost), ideal += double(node.leaf.ideal),
             theta_cost += double(node.leaf.theta_cost);
         ++leaves;

@@ -41,7 +41,7 @@ void make_pairs(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Dire
 void add_lobe_pairs(const AnyBrdf& f, const std::vector<Ridge>& ridges, std::vector<Direction>& wo,
                     std::vector<Direction>& wi) {
   const auto add = [&](Direction known, const SharpLobe& lobe) {
-    const Frame<float> frame = frame_from_normal(lobe.centre);
+    const LocalFrame<float> frame = frame_from_normal(lobe.centre);
     for (const float r : {0.f, 0.3f, 0.6f}) {
       for (const Direction& along : {frame.s, frame.t}) {
         const Direction w = normalize(lobe.centre + r * lobe.width * along);
@@ -127,8 +127,9 @@ void refuse_anisotropy(const AnyBrdf& f, const Values& values, const std::vector
   }
   std::vector<std::size_t> order(wo.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(looked_at), order.end(),
-                    [&](std::size_t a, std::size_t b) { return change[a] != change[b] ? change[a] > change[b] : a < b; });
+  std::partial_sort(
+      order.begin(), order.begin() + std::ptrdiff_t(looked_at), order.end(),
+      [&](std::size_t a, std::size_t b) { return change[a] != change[b] ? change[a] > change[b] : a < b; });
   Pcg32 jitter(seed, 14);
   for (std::size_t n = 0; n < looked_at && change[order[n]] > isotropic_enough; ++n) {
     const std::size_t k = order[n];
@@ -138,11 +139,12 @@ void refuse_anisotropy(const AnyBrdf& f, const Values& values, const std::vector
       const float gap = max(here[c].lo - there[c].hi, there[c].lo - here[c].hi);
       if (gap <= isotropic_enough * max(here[c].hi, there[c].hi) + floor) continue;
       char what[160];
-      std::snprintf(what, sizeof what,
-                    "the BRDF changes when both directions turn by %.4g degrees about the normal, from %.6g to %.6g: "
-                    "it is anisotropic",
-                    double(angle[k]) * 180 / pi_v<double>, double(values[k * channels + c]),
-                    double(other[k * channels + c]));
+      std::snprintf(
+          what, sizeof what,
+          "the BRDF changes when both directions turn by %.4g degrees about the normal, from %.6g to %.6g: "
+          "it is anisotropic",
+          double(angle[k]) * 180 / pi_v<double>, double(values[k * channels + c]),
+          double(other[k * channels + c]));
       throw Error(what, f.traits().name + " at " + describe(wo[k], wi[k]),
                   "use an isotropic function; anisotropic samplers are not built yet");
     }
@@ -158,8 +160,8 @@ float difference(const Values& a, const Values& b) {
   return sum > 0 ? float(miss / sum) : 0.f;
 }
 
-// The largest channel that a climb from the brightest pair finds, where that is suspiciously dark: the pairs may
-// have met nothing but the tail of a lobe.
+// The largest channel that a climb from the brightest pair finds, where that is suspiciously dark: the pairs
+// may have met nothing but the tail of a lobe.
 float summit(const AnyBrdf& f, float largest, Direction wo, Direction wi) {
   if (largest == 0 || largest > 1e-6f) return largest;
   const Ridge ridge = follow_ridge(f, {TargetKind::maximum, 0, 1e30f}, acos(min(wo.z, 1.f)), wi);
@@ -209,7 +211,8 @@ Examination examine(const AnyBrdf& f, const BuildOptions& options, const std::ve
   const auto largest = std::max_element(first.begin(), first.end());
   const auto brightest = std::size_t(largest - first.begin()) / std::size_t(f.channels());
   seen.brightest_wo = wo[brightest], seen.brightest_wi = wi[brightest];
-  if (options.target.scale == 1) seen.target.scale = scale_for(f, summit(f, *largest, wo[brightest], wi[brightest]));
+  if (options.target.scale == 1)
+    seen.target.scale = scale_for(f, summit(f, *largest, wo[brightest], wi[brightest]));
   std::vector<Direction> other_wi = wi;
   for (Direction& w : other_wi) w = mirrored(w);
   const Values other = values_at(f, wo, other_wi);

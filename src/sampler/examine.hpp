@@ -11,7 +11,7 @@ struct Examination {
   Target target;                 // the one asked for, with a scale where floats need one
   bool mirror_symmetric = true;  // to rounding
   Direction brightest_wo{0, 0, 1}, brightest_wi{0, 0, 1};  // of the pairs looked at, wo at azimuth 0
-  float asymmetry = 0;           // mean |T - mirrored T| / mean T
+  float asymmetry = 0;                                     // mean |T - mirrored T| / mean T
 };
 
 // Refuses functions that are negative, NaN or infinite, that differ between two calls or that depend on

@@ -59,7 +59,8 @@ std::vector<Landmark> Field::landmarks(float cos_theta_o) const {
     return lower(domain, wo, wi);
   };
   std::vector<Landmark> places;
-  for (const Direction& wi : {Direction{-wo.x, 0, wo.z}, wo}) places.push_back({lower(domain, wo, wi), {coarse, coarse}});
+  for (const Direction& wi : {Direction{-wo.x, 0, wo.z}, wo})
+    places.push_back({lower(domain, wo, wi), {coarse, coarse}});
   std::vector<SharpLobe> lobes;
   if (f.traits().sharp) lobes = f.traits().sharp(wo);
   for (const Ridge& ridge : ridges) {
@@ -67,7 +68,7 @@ std::vector<Landmark> Field::landmarks(float cos_theta_o) const {
   }
   for (const SharpLobe& lobe : lobes) {
     if (!(lobe.centre.z > 0) || !(lobe.width > 0)) continue;
-    const Frame<float> frame = frame_from_normal(lobe.centre);
+    const LocalFrame<float> frame = frame_from_normal(lobe.centre);
     Landmark at{place(lobe.centre), {0, 0}};
     // How far the square's coordinates reach over the lobe, along two directions; azimuths that wrap are far.
     for (const Direction& tangent : {frame.s, frame.t}) {
@@ -90,8 +91,8 @@ bool Survey::at_jump(float cos_theta_o) const {
   });
 }
 
-void eval_in_parallel(const Field& field, const Host& host, Effort& effort, std::span<const FieldPoint> points,
-                      std::span<FieldValue> out) {
+void eval_in_parallel(const Field& field, const Host& host, Effort& effort,
+                      std::span<const FieldPoint> points, std::span<FieldValue> out) {
   effort.evaluations += points.size();
   if (host.cancelled()) throw Cancelled();
   if (!field.f.traits().concurrent) return field.eval(points, out);

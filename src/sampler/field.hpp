@@ -42,7 +42,7 @@ struct Field {
   AnyBrdf f;
   Target target;
   Domain domain;
-  bool both_sides = false;   // evaluate the mirror image too
+  bool both_sides = false;         // evaluate the mirror image too
   std::vector<Ridge> ridges = {};  // sharp lobes that f did not tell of and that were met all the same
 
   // Throws Error, naming the directions, for a value that is negative, NaN or infinite.
@@ -59,8 +59,8 @@ struct Effort {
 };
 
 // All points of a round at once, through the host's threads where f allows.
-void eval_in_parallel(const Field& field, const Host& host, Effort& effort, std::span<const FieldPoint> points,
-                      std::span<FieldValue> out);
+void eval_in_parallel(const Field& field, const Host& host, Effort& effort,
+                      std::span<const FieldPoint> points, std::span<FieldValue> out);
 
 // What is known about a function once its domain is chosen, and by what means it is asked.
 struct Survey {

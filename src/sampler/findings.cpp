@@ -47,7 +47,8 @@ bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExami
   bool added = false;
   std::vector<Surprise> surprises = seen.surprises;
   for (const FieldPoint& p : seen.towers) {
-    surprises.push_back({p.cos_theta_o, lift(field.domain, wo_from_cosine(p.cos_theta_o), p.p).geometry.wi, 1});
+    surprises.push_back(
+        {p.cos_theta_o, lift(field.domain, wo_from_cosine(p.cos_theta_o), p.p).geometry.wi, 1});
   }
   for (const Surprise& surprise : surprises) {
     if (ridges.size() >= most) break;
@@ -83,12 +84,15 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
   if (!seen.surprises.empty()) {
     const Surprise& s = seen.surprises.front();
     const std::string where = name + " at " + describe(wo_from_cosine(s.cos_theta_o), s.wi);
-    if (!std::isfinite(s.ratio)) throw Error("the function is not 0 where its albedo was found to be 0", where, mend);
-    throw Error(text("the function is %.3g times its bound: a lobe that no grid resolves", double(s.ratio)), where, mend);
+    if (!std::isfinite(s.ratio))
+      throw Error("the function is not 0 where its albedo was found to be 0", where, mend);
+    throw Error(text("the function is %.3g times its bound: a lobe that no grid resolves", double(s.ratio)),
+                where, mend);
   }
   if (mean_disagrees(seen, albedo)) {
-    throw Error(text("draws from the bounds see %.4f +- %.4f of the albedo", seen.by_bounds, seen.by_bounds_error), name,
-                mend);
+    throw Error(
+        text("draws from the bounds see %.4f +- %.4f of the albedo", seen.by_bounds, seen.by_bounds_error),
+        name, mend);
   }
 }
 
@@ -98,7 +102,8 @@ std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vec
   const bool black = std::all_of(albedo.albedo.begin(), albedo.albedo.end(), [](float a) { return a == 0; });
   if (black) notes.push_back("the function is 0 wherever it was looked at: there is no sample for any wo");
   const auto range = [](const Slab& slab) {
-    return text("theta_o %.4g to %.4g degrees", double(slab.theta_lo) * degrees, double(slab.theta_hi) * degrees);
+    return text("theta_o %.4g to %.4g degrees", double(slab.theta_lo) * degrees,
+                double(slab.theta_hi) * degrees);
   };
   const std::string end = spent ? text("the budget of %.3g evaluations is used up: raise max_evaluations",
                                        double(options.max_evaluations))
@@ -114,14 +119,16 @@ std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vec
     return ideal > 0 ? sqr(double(total(slab, &Leaf::cost)) / ideal) - 1 : 0.;
   });
   if (noisy && variance > 10 * double(options.one_shot_variance)) {
-    notes.push_back(text("one-shot weights have a relative variance of %.2g at %s, where %.2g was asked for; ", variance,
-                         range(*noisy).c_str(), double(options.one_shot_variance)) +
-                    end);
+    notes.push_back(
+        text("one-shot weights have a relative variance of %.2g at %s, where %.2g was asked for; ", variance,
+             range(*noisy).c_str(), double(options.one_shot_variance)) +
+        end);
   }
   if (albedo.relative_error > 1.001f * options.albedo_error) {
-    notes.push_back(text("the albedo, and with it pdf and weight of exact mode, is known to %.2g, where %.2g was asked "
-                         "for; steps or rounding in the function hide the rest",
-                         double(albedo.relative_error), double(options.albedo_error)));
+    notes.push_back(
+        text("the albedo, and with it pdf and weight of exact mode, is known to %.2g, where %.2g was asked "
+             "for; steps or rounding in the function hide the rest",
+             double(albedo.relative_error), double(options.albedo_error)));
   }
   return notes;
 }

@@ -49,7 +49,7 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
       for (const float node : lobatto_nodes) {
         const float y = std::ldexp(box.height, -octave);
         const Vec2<float> p{box.x0 + 0.5f * box.width * (1 + node), above ? y : -y};
-        const float theta = lerp(0.5f * float(k), slab.theta_lo, slab.theta_hi);
+        const float theta = linear_mix(0.5f * float(k), slab.theta_lo, slab.theta_hi);
         visits.push_back({task, {{slab.cos_theta_o[k], p}, slab.albedo[k], theta, 0}});
       }
     }
@@ -103,7 +103,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
       for (std::size_t i = 0; i < grid.size(); ++i) {
         const std::size_t theta = i / (grid_size * grid_size);
         grid[i] = normalised(slab, theta, t * grid_points + i);
-        note(leaf, lerp(0.5f * float(theta), slab.theta_lo, slab.theta_hi), t * grid_points + i,
+        note(leaf, linear_mix(0.5f * float(theta), slab.theta_lo, slab.theta_hi), t * grid_points + i,
              grid[i].upper);
       }
       rules.analyse(leaf, grid);
@@ -133,12 +133,12 @@ std::vector<std::uint32_t> coarsest_leaves(Slab& slab) {
   int fewest = coarse_levels;
   const auto levels = [](const Node& node) { return node.leaf.cell.level_x + node.leaf.cell.level_y; };
   for (const Node& node : slab.nodes) {
-    if (node.split == Split::leaf) fewest = std::min(fewest, levels(node));
+    if (node.split == TreeSplit::leaf) fewest = std::min(fewest, levels(node));
   }
   if (fewest == coarse_levels) return leaves;
   for (std::uint32_t i = 0; i < slab.nodes.size(); ++i) {
     Node& node = slab.nodes[i];
-    if (node.split != Split::leaf || levels(node) > fewest) continue;
+    if (node.split != TreeSplit::leaf || levels(node) > fewest) continue;
     node.leaf.split_x = node.leaf.cell.level_x <= node.leaf.cell.level_y;
     leaves.push_back(i);
   }
@@ -157,7 +157,7 @@ std::vector<std::uint32_t> dearest_leaves(Slab& slab, const GrowthRules& rules, 
   float worst = 0;
   std::size_t leaves = 0;
   for (std::uint32_t i = 0; i < slab.nodes.size(); ++i) {
-    if (slab.nodes[i].split != Split::leaf) continue;
+    if (slab.nodes[i].split != TreeSplit::leaf) continue;
     ++leaves;
     if (!may_split(slab.nodes[i].leaf)) continue;
     order.push_back(i);
@@ -248,7 +248,8 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
   int round = 0;
   for (bool busy = true; busy;) {
     // How many rounds there will be, nobody knows: each brings the bar closer to the end of its stage.
-    survey.host.progress(lerp(1 - 1 / (1 + 0.05f * float(round++)), rules.progress, rules.progress_end));
+    survey.host.progress(
+        linear_mix(1 - 1 / (1 + 0.05f * float(round++)), rules.progress, rules.progress_end));
     evaluate(slabs, tasks, survey, rules);
     tasks.clear();
     busy = false;

@@ -76,13 +76,15 @@ void check_identity(const SamplerData& data, const AnyBrdf& f, float relative_to
   if (channels.empty()) return;
   const std::size_t count = channels.size() / BrdfProbes::count;
   if (count != std::size_t(f.channels())) {
-    refuse("it has " + std::to_string(count) + " channels, here there are " + std::to_string(f.channels()), data, f);
+    refuse("it has " + std::to_string(count) + " channels, here there are " + std::to_string(f.channels()),
+           data, f);
   }
   const std::vector<float> here = probe_channels(f);
   for (std::size_t k = 0; k < channels.size(); ++k) {
     const std::size_t i = k / count, c = k % count;
     // Beside the pair's brightest channel: rounding of a dark one is no other function.
-    const float floor = 1e-3f * max(abs(data.probes.target[i]) / data.target.scale, 1e-6f / data.target.scale);
+    const float floor =
+        1e-3f * max(abs(data.probes.target[i]) / data.target.scale, 1e-6f / data.target.scale);
     if (miss_of(channels[k], here[k], floor) <= relative_tolerance) continue;
     std::snprintf(text, sizeof text, "at probe %zu its channel %zu was %.6g, here it is %.6g", i, c,
                   double(channels[k]), double(here[k]));

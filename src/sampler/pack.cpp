@@ -71,19 +71,19 @@ std::uint32_t make_alias_table(std::vector<std::uint32_t>& mass, PackedLeaf* lea
 }
 
 // Leaves in preorder with their cells and slopes.
-std::vector<PackedLeaf> packed_leaves(const Tree& tree) {
+std::vector<PackedLeaf> packed_leaves(const CanonicalTree& tree) {
   std::vector<PackedLeaf> leaves, stack{{}};
-  for (const Split split : tree.nodes) {
+  for (const TreeSplit split : tree.nodes) {
     PackedLeaf c = stack.back();
     stack.pop_back();
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       c.slope_x = tree.slope_x[leaves.size()], c.slope_y = tree.slope_y[leaves.size()];
       leaves.push_back(c);
       continue;
     }
-    const std::uint8_t level = ++(split == Split::x ? c.level_x : c.level_y);
+    const std::uint8_t level = ++(split == TreeSplit::x ? c.level_x : c.level_y);
     PackedLeaf upper = c;
-    std::uint16_t& start = split == Split::x ? upper.x : upper.y;
+    std::uint16_t& start = split == TreeSplit::x ? upper.x : upper.y;
     start = std::uint16_t(start + (0x8000U >> level));
     stack.push_back(upper);
     stack.push_back(c);
@@ -93,7 +93,7 @@ std::vector<PackedLeaf> packed_leaves(const Tree& tree) {
 
 // Appends the inner nodes of a subtree in preorder.
 struct DescentBuilder {
-  const Tree& tree;
+  const CanonicalTree& tree;
   const std::vector<std::uint32_t>& mass;
   std::vector<DescentNode>& nodes;
   std::size_t next_node = 0;
@@ -104,21 +104,21 @@ struct DescentBuilder {
     std::uint32_t leaves;
   };
   Subtree add() {
-    const Split split = tree.nodes[next_node++];
-    if (split == Split::leaf) return {double(mass[next_leaf++]), 1};
+    const TreeSplit split = tree.nodes[next_node++];
+    if (split == TreeSplit::leaf) return {double(mass[next_leaf++]), 1};
     const std::size_t at = nodes.size();
     nodes.emplace_back();
     const Subtree lower = add(), upper = add();
     nodes[at].lower = float(lower.mass / (lower.mass + upper.mass));
     nodes[at].lower_leaves = lower.leaves & 0x7fffffffU;
-    nodes[at].split_x = split == Split::x;
+    nodes[at].split_x = split == TreeSplit::x;
     return {lower.mass + upper.mass, lower.leaves + upper.leaves};
   }
 };
 
 // Appends a slab with its leaves and alias table; a leaf's height is unit * mass / area. Slabs ascend in
 // theta_o, the forest in the cosine. Returns the masses as the alias table has them.
-std::vector<std::uint32_t> append(const Tree& tree, double unit, PackedForest& forest) {
+std::vector<std::uint32_t> append(const CanonicalTree& tree, double unit, PackedForest& forest) {
   std::vector<PackedLeaf> leaves = packed_leaves(tree);
   std::vector<std::uint32_t> mass = tree.mass;
   PackedSlab slab;

@@ -33,7 +33,7 @@ std::size_t find_slab(const Partition& partition, std::span<const float> known) 
 
 std::vector<SlabBox> slab_boxes(const Partition& partition) {
   SlabBox root;
-  for (const Coordinate& c : partition.coordinates) root.lo.push_back(c.lo), root.hi.push_back(c.hi);
+  for (const KnownCoordinate& c : partition.coordinates) root.lo.push_back(c.lo), root.hi.push_back(c.hi);
   std::vector<SlabBox> boxes, stack{root};
   std::size_t inner = 0;
   for (const std::uint8_t axis : partition.axis) {
@@ -57,7 +57,7 @@ void validate(const Partition& partition) {
     throw Error(what, "partition of the known coordinates", "build the sampler again");
   };
   if (partition.coordinates.empty() || partition.coordinates.size() > 8) fail("needs 1 to 8 coordinates");
-  for (const Coordinate& c : partition.coordinates) {
+  for (const KnownCoordinate& c : partition.coordinates) {
     if (!(std::isfinite(c.lo) && std::isfinite(c.hi) && c.lo < c.hi))
       fail("the range of " + c.name + " is empty");
   }
@@ -74,7 +74,7 @@ void validate(const Partition& partition) {
   if (open != 0) fail("the tree is incomplete");
   if (inner != partition.split.size()) fail("the number of splits does not fit the tree");
   std::vector<SlabBox> stack{{{}, {}}};
-  for (const Coordinate& c : partition.coordinates) {
+  for (const KnownCoordinate& c : partition.coordinates) {
     stack[0].lo.push_back(c.lo), stack[0].hi.push_back(c.hi);
   }
   inner = 0;

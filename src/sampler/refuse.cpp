@@ -10,8 +10,8 @@ namespace reflectree::detail {
 
 std::string describe(Direction wo, Direction wi) {
   char text[192];
-  std::snprintf(text, sizeof text, "wo = (%.7g, %.7g, %.7g), wi = (%.7g, %.7g, %.7g)", double(wo.x), double(wo.y),
-                double(wo.z), double(wi.x), double(wi.y), double(wi.z));
+  std::snprintf(text, sizeof text, "wo = (%.7g, %.7g, %.7g), wi = (%.7g, %.7g, %.7g)", double(wo.x),
+                double(wo.y), double(wo.z), double(wi.x), double(wi.y), double(wi.z));
   return text;
 }
 

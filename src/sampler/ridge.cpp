@@ -15,7 +15,8 @@ constexpr float nearest = 1e-4f, farthest = 1.5705f;  // theta_o
 Direction viewer(float theta) { return {std::sin(theta), 0, std::cos(theta)}; }
 
 // t at directions beside each other, for one wo.
-std::vector<float> targets(const AnyBrdf& f, const Target& target, float theta, const std::vector<Direction>& wi) {
+std::vector<float> targets(const AnyBrdf& f, const Target& target, float theta,
+                           const std::vector<Direction>& wi) {
   const auto channels = std::size_t(f.channels());
   const std::vector<Direction> wo(wi.size(), viewer(theta));
   std::vector<float> values(wi.size() * channels), t(wi.size());
@@ -25,7 +26,7 @@ std::vector<float> targets(const AnyBrdf& f, const Target& target, float theta, 
 }
 
 Direction beside(Direction w, float a, float b) {
-  const Frame<float> frame = frame_from_normal(w);
+  const LocalFrame<float> frame = frame_from_normal(w);
   return normalize(w + a * frame.s + b * frame.t);
 }
 
@@ -69,8 +70,8 @@ float width_of(const AnyBrdf& f, const Target& target, float theta, const Top& t
   return 0.5f;
 }
 
-// Where the lobe may be for the next viewer: it stands still, goes with wo, with its mirror image, with the half
-// vector, or on as it came.
+// Where the lobe may be for the next viewer: it stands still, goes with wo, with its mirror image, with the
+// half vector, or on as it came.
 std::vector<Direction> guesses(float theta, float next, Direction wi, const Direction* previous) {
   const auto turned = [wi](float by) {  // about y, x to z
     const float c = std::cos(by), s = std::sin(by);
@@ -100,7 +101,8 @@ std::optional<SharpLobe> Ridge::at(float theta) const {
 Ridge follow_ridge(const AnyBrdf& f, const Target& target, float theta_o, Direction wi) {
   const Top start = climb(f, target, theta_o, wi, 0.01f);
   const float width = width_of(f, target, theta_o, start);
-  const float longest = min(0.03f, std::sqrt(width));  // so that lines between the places stay inside the lobe
+  const float longest =
+      min(0.03f, std::sqrt(width));  // so that lines between the places stay inside the lobe
   Ridge ridge{{theta_o}, {{start.wi, width}}};
   for (const float sign : {-1.f, 1.f}) {
     float theta = theta_o, step = min(longest, 2 * width);

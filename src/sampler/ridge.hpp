@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sharp lobe that was met by chance, followed over the viewer's elevation, so that a build can look at it from
-// the start as if f had told of it.
+// A sharp lobe that was met by chance, followed over the viewer's elevation, so that a build can look at it
+// from the start as if f had told of it.
 #pragma once
 
 #include <optional>

@@ -28,15 +28,15 @@ const char* name_of(DomainKind kind) {
   return "unknown";
 }
 
-std::vector<Cell> leaf_cells(const std::vector<Split>& nodes, const Domain& domain) {
-  std::vector<Cell> cells, stack{{-1, 1, domain.half ? 0.f : -1.f, 1}};
-  for (const Split split : nodes) {
+std::vector<SquareCell> leaf_cells(const std::vector<TreeSplit>& nodes, const Domain& domain) {
+  std::vector<SquareCell> cells, stack{{-1, 1, domain.half ? 0.f : -1.f, 1}};
+  for (const TreeSplit split : nodes) {
     if (stack.empty()) break;
-    const Cell c = stack.back();
+    const SquareCell c = stack.back();
     stack.pop_back();
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       cells.push_back(c);
-    } else if (split == Split::x) {
+    } else if (split == TreeSplit::x) {
       const float mid = 0.5f * (c.x0 + c.x1);
       stack.push_back({mid, c.x1, c.y0, c.y1});
       stack.push_back({c.x0, mid, c.y0, c.y1});
@@ -56,22 +56,22 @@ namespace {
 }
 
 // Complete preorder tree of at most 15 levels an axis, one nonzero mass a leaf.
-void check_tree(const Tree& tree, const std::string& where) {
+void check_tree(const CanonicalTree& tree, const std::string& where) {
   struct Levels {
     int x, y;
   };
   std::vector<Levels> stack{{0, 0}};
   std::size_t leaves = 0;
-  for (const Split split : tree.nodes) {
+  for (const TreeSplit split : tree.nodes) {
     if (stack.empty()) fail("the tree goes on after its end", where);
     const Levels l = stack.back();
     stack.pop_back();
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       ++leaves;
       continue;
     }
-    if (split != Split::x && split != Split::y) fail("unknown kind of node", where);
-    const Levels child{l.x + (split == Split::x), l.y + (split == Split::y)};
+    if (split != TreeSplit::x && split != TreeSplit::y) fail("unknown kind of node", where);
+    const Levels child{l.x + (split == TreeSplit::x), l.y + (split == TreeSplit::y)};
     if (child.x > 15 || child.y > 15) fail("the tree is deeper than 15 levels an axis", where);
     stack.push_back(child);
     stack.push_back(child);
@@ -136,9 +136,11 @@ void validate(const SamplerData& data) {
   if (a.cos_theta_o.front() != min_cos_theta_o || a.cos_theta_o.back() != 1) {
     fail("the nodes do not span the hemisphere", "albedo table");
   }
-  if (!(data.target.scale > 0 && std::isfinite(data.target.scale))) fail("the scale is not a positive number", "target");
+  if (!(data.target.scale > 0 && std::isfinite(data.target.scale)))
+    fail("the scale is not a positive number", "target");
   const std::vector<float>& channels = data.probes.channels;
-  if (channels.size() % BrdfProbes::count != 0 || channels.size() > BrdfProbes::count * std::size_t(max_channels)) {
+  if (channels.size() % BrdfProbes::count != 0 ||
+      channels.size() > BrdfProbes::count * std::size_t(max_channels)) {
     fail("a value of every channel is needed at every pair", "probes");
   }
   const Domain& d = data.domain;

@@ -10,7 +10,7 @@ Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const F
   Slab slab{theta_lo, theta_hi, {}, {}, {}, {Node{}}};
   // Just inside the borders, where a neighbour's kink does not reach.
   const auto cosine_at = [&](float t) {
-    return clamp(cos(lerp(clamp(t, 1e-4f, 1 - 1e-4f), theta_lo, theta_hi)), min_cos_theta_o, 1.f);
+    return clamp(cos(linear_mix(clamp(t, 1e-4f, 1 - 1e-4f), theta_lo, theta_hi)), min_cos_theta_o, 1.f);
   };
   for (std::size_t k = 0; k < theta_nodes; ++k) {
     slab.cos_theta_o[k] = cosine_at(0.5f * float(k));
@@ -25,7 +25,8 @@ Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const F
     const float t = float(step) / mark_steps, c = cosine_at(t);
     const std::vector<Landmark> here = field.landmarks(c);
     for (std::size_t i = 0; i < here.size(); ++i) {
-      slab.marks.push_back({{c, here[i].p}, albedo_at(table, c), lerp(t, theta_lo, theta_hi), travel(i)});
+      slab.marks.push_back(
+          {{c, here[i].p}, albedo_at(table, c), linear_mix(t, theta_lo, theta_hi), travel(i)});
     }
   }
   return slab;
@@ -37,7 +38,7 @@ std::vector<std::uint32_t> leaves_in_order(const Slab& slab) {
     const std::uint32_t i = stack.back();
     stack.pop_back();
     const Node& node = slab.nodes[i];
-    if (node.split == Split::leaf) {
+    if (node.split == TreeSplit::leaf) {
       order.push_back(i);
     } else {
       stack.push_back(node.child + 1);
@@ -50,7 +51,7 @@ std::vector<std::uint32_t> leaves_in_order(const Slab& slab) {
 float total(const Slab& slab, float Leaf::*member) {
   double sum = 0;
   for (const Node& node : slab.nodes) {
-    if (node.split == Split::leaf) sum += double(node.leaf.*member);
+    if (node.split == TreeSplit::leaf) sum += double(node.leaf.*member);
   }
   return float(sum);
 }
@@ -58,7 +59,7 @@ float total(const Slab& slab, float Leaf::*member) {
 void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain) {
   const auto child = std::uint32_t(slab.nodes.size());
   Leaf leaf = slab.nodes[index].leaf;
-  slab.nodes[index].split = leaf.split_x ? Split::x : Split::y;
+  slab.nodes[index].split = leaf.split_x ? TreeSplit::x : TreeSplit::y;
   slab.nodes[index].child = child;
   DyadicCell& cell = leaf.cell;
   ++(leaf.split_x ? cell.level_x : cell.level_y);
@@ -70,7 +71,7 @@ void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain) {
     if (contains(box_of(cell, domain), leaf.seen_at)) {
       inherited.seen = leaf.seen, inherited.seen_theta = leaf.seen_theta, inherited.seen_at = leaf.seen_at;
     }
-    slab.nodes.push_back({Split::leaf, 0, inherited});
+    slab.nodes.push_back({TreeSplit::leaf, 0, inherited});
   }
 }
 

@@ -12,7 +12,7 @@
 namespace reflectree::detail {
 
 struct Node {
-  Split split = Split::leaf;
+  TreeSplit split = TreeSplit::leaf;
   std::uint32_t child = 0;  // first of two
   Leaf leaf;
 };

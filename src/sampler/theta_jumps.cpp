@@ -12,8 +12,8 @@ namespace reflectree::detail {
 namespace {
 
 constexpr std::size_t points = 128;
-constexpr double leap = 0.02;     // of the values' sum, to be a jump
-constexpr double narrow = 1e-7;   // radians
+constexpr double leap = 0.02;    // of the values' sum, to be a jump
+constexpr double narrow = 1e-7;  // radians
 
 // Fixed points of the square: half of them spread, half of them drawn to the pole, where lobes are.
 std::vector<Vec2<float>> fixed_points(const Domain& domain, std::uint64_t seed) {

@@ -24,7 +24,7 @@ struct Climber {
 };
 
 FieldPoint point_of(const Climber& c, const float at[3]) {
-  const float theta = lerp(at[0], c.slab->theta_lo, c.slab->theta_hi);
+  const float theta = linear_mix(at[0], c.slab->theta_lo, c.slab->theta_hi);
   return {clamp(cos(theta), min_cos_theta_o, 1.f),
           {c.box.x0 + c.box.width * at[1], c.box.y0 + c.box.height * at[2]}};
 }
@@ -94,7 +94,7 @@ void raise(const Climber& c, float share) {
   const float seen = c.value * shape(leaf, c.box, p);
   if (seen > leaf.seen) {
     leaf.seen = seen, leaf.seen_at = p;
-    leaf.seen_theta = lerp(c.at[0], c.slab->theta_lo, c.slab->theta_hi);
+    leaf.seen_theta = linear_mix(c.at[0], c.slab->theta_lo, c.slab->theta_hi);
   }
   leaf.share = max(leaf.share, max(share, floor_share));
   leaf.cost = area_share(leaf.cell) * leaf.share;
@@ -108,7 +108,7 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     for (std::size_t i = first_new[s]; i < slabs[s].nodes.size(); ++i) {
       Node& node = slabs[s].nodes[i];
-      if (node.split != Split::leaf) continue;
+      if (node.split != TreeSplit::leaf) continue;
       // From the largest ratio of the grid, and from the largest T seen by anyone.
       Leaf& leaf = node.leaf;
       const Box box = box_of(leaf.cell, field.domain);
@@ -134,8 +134,8 @@ struct ProbedLeaf {
 // batches and hands each leaf its ratios T / (albedo q), of the upper or the mean of mirror images:
 // visit(probed, points, ratios).
 template <class Count, class Visit>
-void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue::*image, const Survey& survey,
-                  Count&& count_of, Visit&& visit) {
+void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue::*image,
+                  const Survey& survey, Count&& count_of, Visit&& visit) {
   const Field& field = survey.field;
   constexpr std::size_t batch = std::size_t(1) << 20U;
   std::vector<FieldPoint> points;

@@ -46,7 +46,7 @@ class BrightDirections {
     const double before = i ? cdf_[i - 1] : 0;
     const double s = clamp((wanted - before) / std::max(cdf_[i] - before, 1e-300), 0., 1.);
     const int row = int(i) / map_.width, column = int(i) % map_.width;
-    const double z = lerp(v, row_edge(map_, row), row_edge(map_, row + 1));
+    const double z = linear_mix(v, row_edge(map_, row), row_edge(map_, row + 1));
     const double phi = 2 * pi_v<double> * (column + s) / map_.width, r = std::sqrt(max(0., 1 - z * z));
     return {r * std::cos(phi), r * std::sin(phi), z};
   }
@@ -65,7 +65,7 @@ double correlation_at_chord(const LatLong& map, const BrightDirections& bright, 
   double sum = 0;
   for (std::uint32_t i = 0; i < pairs; ++i) {
     const Vec3<double> a = bright.draw(scrambled_sobol(i, 0, seed), scrambled_sobol(i, 1, seed));
-    const Frame<double> frame = frame_from_normal(a);
+    const LocalFrame<double> frame = frame_from_normal(a);
     const double phi = 2 * pi_v<double> * scrambled_sobol(i, 2, seed);
     const Vec3<double> b = cos_g * a + sin_g * (std::cos(phi) * frame.s + std::sin(phi) * frame.t);
     const auto la = double(map.at({float(a.x), float(a.y), float(a.z)}));
@@ -88,7 +88,7 @@ LatLong symmetric(const Radiance& radiance) {
 // CIE standard overcast sky (CIE S 011, 1:2): 1 : 3 from horizon to zenith. The ground reflects a fifth.
 double clouded(double theta) {
   const double z = std::cos(theta), above = clamp(0.5 + z / 0.2, 0., 1.);
-  return lerp(above * above * (3 - 2 * above), 0.2, (1 + 2 * max(z, 0.)) / 3);
+  return linear_mix(above * above * (3 - 2 * above), 0.2, (1 + 2 * max(z, 0.)) / 3);
 }
 
 }  // namespace
@@ -105,12 +105,12 @@ float LatLong::at(Direction w) const {
 
 double Environment::correlation_at(double cos_angle) const {
   const double chord = std::sqrt(max(0., 2 - 2 * cos_angle));
-  if (chord < first_chord) return lerp(chord / first_chord, correlation[0], correlation[1]);
+  if (chord < first_chord) return linear_mix(chord / first_chord, correlation[0], correlation[1]);
   const double x = std::log(chord / first_chord) / std::log(2 / first_chord) * (nodes - 2);
   const int i = 1 + std::clamp(int(x), 0, nodes - 3);
   const double lo = chord_of_node(i), hi = chord_of_node(i + 1);
-  return lerp(clamp((chord - lo) / (hi - lo), 0., 1.), correlation[std::size_t(i)],
-              correlation[std::size_t(i) + 1]);
+  return linear_mix(clamp((chord - lo) / (hi - lo), 0., 1.), correlation[std::size_t(i)],
+                    correlation[std::size_t(i) + 1]);
 }
 
 Environment make_environment(std::string name, LatLong map) {

@@ -12,11 +12,11 @@ namespace {
 
 using Regions = std::vector<CubatureRegion>;
 
-double lo(const Rectangle& r, bool x) { return x ? r.x0 : r.y0; }
-double hi(const Rectangle& r, bool x) { return x ? r.x1 : r.y1; }
+double lo(const CubatureBox& r, bool x) { return x ? r.x0 : r.y0; }
+double hi(const CubatureBox& r, bool x) { return x ? r.x1 : r.y1; }
 
 // The share of a region below `at`, its mass taken as uniform: good enough to place borders.
-double share_below(const Rectangle& r, bool x, double at) {
+double share_below(const CubatureBox& r, bool x, double at) {
   return std::clamp((at - lo(r, x)) / (hi(r, x) - lo(r, x)), 0., 1.);
 }
 
@@ -58,7 +58,7 @@ Regions part(const Regions& regions, bool x, double at, bool upper) {
 }
 
 // Returns the node's number, or -1 - bin.
-int divide(Bins& bins, const Regions& regions, const Rectangle& box, int count) {
+int divide(Bins& bins, const Regions& regions, const CubatureBox& box, int count) {
   if (count <= 1) {
     bins.boxes.push_back(box);
     return -int(bins.boxes.size());
@@ -68,7 +68,7 @@ int divide(Bins& bins, const Regions& regions, const Rectangle& box, int count) 
   for (const auto& r : regions) mass += r.value;
   const int lower_count = count / 2;
   const double at = quantile(regions, x, mass * lower_count / count, lo(box, x), hi(box, x));
-  Rectangle below = box, above = box;
+  CubatureBox below = box, above = box;
   (x ? below.x1 : below.y1) = at;
   (x ? above.x0 : above.y0) = at;
   const auto node = bins.nodes.size();
@@ -87,7 +87,7 @@ constexpr int grid_x = 96, grid_y = 48;
 int cells_across(double width, double of, int grid) { return std::max(2, int(std::ceil(width / of * grid))); }
 
 // Over a box cut at the lines where the chart's grading turns, so that no region straddles its kinks.
-CubatureResult integrate(const Integrand& f, const Rectangle& box, CubatureOptions options) {
+CubatureResult integrate(const Integrand& f, const CubatureBox& box, CubatureOptions options) {
   CubatureResult total;
   total.converged = true;
   for (double x0 = box.x0; x0 < box.x1;) {
@@ -160,7 +160,7 @@ Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& op
     bins.mass[i] = r.value;
     errors[i] = r.error;
   });
-  Sum total;
+  CompensatedSum total;
   for (std::size_t i = 0; i < bins.mass.size(); ++i) {
     total += bins.mass[i];
     if (bins.mass[i] > 0) bins.worst_error = std::max(bins.worst_error, errors[i] / bins.mass[i]);

@@ -76,7 +76,7 @@ CheckResult pearson(const char* name, const Tally& tally, std::span<const double
                     const ChiSquareOptions& options) {
   CheckResult result;
   result.name = name;
-  Sum mass_sum;
+  CompensatedSum mass_sum;
   for (const double m : mass) mass_sum += m;
   const auto drawn = double(std::accumulate(tally.count.begin(), tally.count.end(), std::uint64_t{0}));
   if (!(mass_sum.value() > 0)) {  // nothing to reflect: nothing may be drawn
@@ -162,7 +162,7 @@ CheckResult check_weights(const Tally& tally, const Bins& bins, const ChiSquareO
     ++groups;
     expected = observed = variance = counts = 0;
   };
-  Sum all, all2;
+  CompensatedSum all, all2;
   for (std::size_t i = 0; i < tally.weight.size(); ++i) all += tally.weight[i], all2 += tally.weight2[i];
   const double ratio = all.value() > 0 ? all2.value() / all.value() : 0;
   const auto drawn = double(std::accumulate(tally.count.begin(), tally.count.end(), std::uint64_t{0}));
@@ -187,7 +187,7 @@ CheckResult check_weights(const Tally& tally, const Bins& bins, const ChiSquareO
 
 CheckResult check_mean_weight(const Tally& tally, const Bins& bins, const ChiSquareOptions& options,
                               double tolerance) {
-  Sum sum, sum2;
+  CompensatedSum sum, sum2;
   for (std::size_t i = 0; i < tally.weight.size(); ++i) sum += tally.weight[i], sum2 += tally.weight2[i];
   const double n = double(tally.samples), mean = sum.value() / n;
   const double error = std::sqrt(std::max(sum2.value() / n - mean * mean, 0.) / (n - 1));

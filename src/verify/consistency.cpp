@@ -76,11 +76,11 @@ CheckResult check_support(const ErasedSampler& sampler, const TargetFunction& f,
   const Vec3<double> w = normalize(Vec3<double>{bins.wo.x, bins.wo.y, bins.wo.z});
   Pcg32 u = detail::part_generator(2, 0);
   std::vector<Vec3<double>> wi;
-  for (const Rectangle& r : bins.boxes) {
+  for (const CubatureBox& r : bins.boxes) {
     for (int k = 0; k < 16; ++k) {
       const Direction d = [&] {
         const auto p = bins.chart.direction(
-            {lerp(to_unit_double(u()), r.x0, r.x1), lerp(to_unit_double(u()), r.y0, r.y1)});
+            {linear_mix(to_unit_double(u()), r.x0, r.x1), linear_mix(to_unit_double(u()), r.y0, r.y1)});
         return Direction{float(p.w.x), float(p.w.y), float(p.w.z)};
       }();
       wi.push_back({d.x, d.y, d.z});

@@ -83,7 +83,7 @@ CheckResult check_albedo_estimates(const std::string& name, const AlbedoEstimate
       squares[c] += x * x;
     }
   });
-  Sum sum, square;
+  CompensatedSum sum, square;
   for (std::size_t c = 0; c < chunks; ++c) sum += sums[c], square += squares[c];
   const double n = double(count), mean = sum.value() / n;
   const double error = std::sqrt(std::max(square.value() / n - mean * mean, 0.) / (n - 1));

@@ -13,7 +13,7 @@ namespace reflectree::detail {
 // takes wi at its word.
 inline std::array<Vec3<double>, 7> neighbours(Direction wi) {
   const Vec3<double> w = normalize(Vec3<double>{wi.x, wi.y, wi.z});
-  const Frame<double> frame = frame_from_normal(w);
+  const LocalFrame<double> frame = frame_from_normal(w);
   constexpr double across = 3e-7, along = 1.2e-7;
   return {w,
           w + across * frame.s,

@@ -83,9 +83,10 @@ void check_borders(const char* mode, const Partition& partition, const PackedFor
   }
 }
 
-void check_leaves(const std::string& place, const Tree& tree, const Domain& domain, const PackedSlab& slab,
-                  const PackedLeaf* leaves, std::span<const double> height, Worst& worst) {
-  const std::vector<Cell> cells = leaf_cells(tree.nodes, domain);
+void check_leaves(const std::string& place, const CanonicalTree& tree, const Domain& domain,
+                  const PackedSlab& slab, const PackedLeaf* leaves, std::span<const double> height,
+                  Worst& worst) {
+  const std::vector<SquareCell> cells = leaf_cells(tree.nodes, domain);
   const double y0 = domain.half ? 0 : -1, unit_y = domain.half ? 0x1p-15 : 0x1p-14;
   double volume = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -118,7 +119,7 @@ std::vector<std::uint64_t> choices(const PackedSlab& slab, const PackedLeaf* lea
   return mass;
 }
 
-void check_choices(const std::string& place, const Tree& tree, const PackedSlab& slab,
+void check_choices(const std::string& place, const CanonicalTree& tree, const PackedSlab& slab,
                    std::span<const std::uint64_t> mass, Worst& worst) {
   std::uint64_t sum = 0;
   for (const std::uint32_t m : tree.mass) sum += m;
@@ -136,7 +137,7 @@ void check_choices(const std::string& place, const Tree& tree, const PackedSlab&
 
 // Inner nodes in preorder.
 struct Descent {
-  const Tree& tree;
+  const CanonicalTree& tree;
   std::span<const std::uint64_t> mass;
   const DescentNode* nodes;
   const std::string& place;
@@ -148,13 +149,13 @@ struct Descent {
     std::size_t leaves;
   };
   Below walk() {
-    const Split split = tree.nodes[next_node++];
-    if (split == Split::leaf) return {double(mass[next_leaf++]), 1};
+    const TreeSplit split = tree.nodes[next_node++];
+    if (split == TreeSplit::leaf) return {double(mass[next_leaf++]), 1};
     const std::size_t at = next_inner++;
     const Below lower = walk(), upper = walk();
     const DescentNode& node = nodes[at];
     const double share = lower.mass / (lower.mass + upper.mass);
-    worst.must(node.lower_leaves == lower.leaves && bool(node.split_x) == (split == Split::x),
+    worst.must(node.lower_leaves == lower.leaves && bool(node.split_x) == (split == TreeSplit::x),
                place + text(", node %.0f: another split", double(at)));
     worst.see(std::abs(double(node.lower) - share), 2e-7 * share,
               place + text(", node %.0f: lower share %.8g for %.8g", double(at), double(node.lower), share));
@@ -170,7 +171,7 @@ std::vector<CheckResult> check_packing(const SamplerData& data, const PackedSamp
   check_borders("one-shot", data.one_shot_partition, packed.one_shot, slabs);
   if (slabs.excess > 1) return {check_albedo(data, packed), slabs.result("packed_slabs")};
   const auto check_tree = [&](const char* mode, const PackedForest& forest, std::size_t slab_number,
-                              std::size_t slab_total, const Tree& tree, double volume) {
+                              std::size_t slab_total, const CanonicalTree& tree, double volume) {
     const std::string place = mode + text(" slab %.0f", double(slab_number));
     const PackedSlab& slab = packed_slab(forest, slab_total, slab_number);
     const bool fits = slab.count == tree.mass.size() && slab.first + slab.count <= forest.leaves.size();

@@ -25,7 +25,7 @@ Vec3<double> random_above(Pcg32& u) {
 Pair random_pair(Pcg32& u, bool near_mirror) {
   const Vec3<double> wo = random_above(u);
   if (!near_mirror) return {wo, random_above(u)};
-  const Frame<double> frame = frame_from_normal(Vec3<double>{-wo.x, -wo.y, wo.z});
+  const LocalFrame<double> frame = frame_from_normal(Vec3<double>{-wo.x, -wo.y, wo.z});
   const double angle = std::pow(10., -3 * to_unit_double(u())), phi = 2 * pi_v<double> * to_unit_double(u());
   Vec3<double> wi = to_world(frame, direction_from_angles(angle, phi));
   wi.z = std::max(std::abs(wi.z), 1e-4);

@@ -52,7 +52,7 @@ Highest highest_anywhere(const TargetFunction& f, Vec3<double> wo) {
   // Climb: the best of eight neighbours; halve the step where none is higher by more than rounding.
   double step = 0.05;
   for (int round = 0; round < 200 && step > 1e-7; ++round) {
-    const Frame<double> frame = frame_from_normal(best.w);
+    const LocalFrame<double> frame = frame_from_normal(best.w);
     std::array<Vec3<double>, 8> around;
     for (std::size_t k = 0; k < around.size(); ++k) {
       const double phi = double(k) * pi_v<double> / 4;
@@ -106,7 +106,7 @@ CubatureResult reference_albedo(const TargetFunction& f, Direction wo, const Ref
   cubature_options.max_evaluations = options.max_evaluations;
   cubature_options.cells_x = start_cells_x;
   cubature_options.cells_y = start_cells_y;
-  Rectangle domain = HemisphereChart::domain;
+  CubatureBox domain = HemisphereChart::domain;
   if (options.mirror_symmetric) {
     domain.x1 *= 0.5;
     cubature_options.cells_x /= 2;

@@ -93,7 +93,7 @@ namespace {
 // The leaf that holds a point of the square, in a canonical tree.
 class LeafFinder {
  public:
-  LeafFinder(const std::vector<Split>& nodes, const Domain& domain) : half_(domain.half) {
+  LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain) : half_(domain.half) {
     std::size_t next = 0, leaf = 0;
     nodes_.reserve(nodes.size());
     add(nodes, next, leaf);
@@ -105,8 +105,8 @@ class LeafFinder {
   Found find(Vec2<float> p) const {
     Found at{0, -1, half_ ? 0. : -1., 2, half_ ? 1. : 2.};
     std::size_t i = 0;
-    while (nodes_[i].split != Split::leaf) {
-      const bool x = nodes_[i].split == Split::x;
+    while (nodes_[i].split != TreeSplit::leaf) {
+      const bool x = nodes_[i].split == TreeSplit::x;
       double &start = x ? at.x : at.y, &size = x ? at.width : at.length;
       size *= 0.5;
       const bool upper = double(x ? p.x : p.y) >= start + size;
@@ -119,14 +119,14 @@ class LeafFinder {
 
  private:
   struct Node {
-    Split split;
+    TreeSplit split;
     std::size_t upper_or_leaf;
   };
-  void add(const std::vector<Split>& nodes, std::size_t& next, std::size_t& leaf) {
-    const Split split = nodes[next++];
+  void add(const std::vector<TreeSplit>& nodes, std::size_t& next, std::size_t& leaf) {
+    const TreeSplit split = nodes[next++];
     const std::size_t at = nodes_.size();
-    nodes_.push_back({split, split == Split::leaf ? leaf++ : 0});
-    if (split == Split::leaf) return;
+    nodes_.push_back({split, split == TreeSplit::leaf ? leaf++ : 0});
+    if (split == TreeSplit::leaf) return;
     add(nodes, next, leaf);
     nodes_[at].upper_or_leaf = nodes_.size();
     add(nodes, next, leaf);
@@ -149,7 +149,7 @@ class Bounds {
   double at(Direction wo, Vec2<float> p) const {
     const float theta = theta_of(wo);
     const std::size_t slab = find_slab(data_.exact_partition, {&theta, 1});
-    const Tree& tree = data_.exact[slab];
+    const CanonicalTree& tree = data_.exact[slab];
     const auto leaf = finders_[slab].find(p);
     const double share = leaf.width * leaf.length / (data_.domain.half ? 2 : 4);
     const double s = 2 * (double(p.x) - leaf.x) / leaf.width - 1;

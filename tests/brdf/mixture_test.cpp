@@ -44,7 +44,7 @@ std::vector<Pair> many_pairs() {
 TEST(Mixture, IsTheSumOfItsTermsInEveryForm) {
   const Lambert a{{0.5f, 0.25f, 1.f}};
   const Ggx b;
-  const Sum<Lambert, Ggx> sum{0.25f, a, 0.5f, b};
+  const BrdfSum<Lambert, Ggx> sum{0.25f, a, 0.5f, b};
   const AnyBrdf any = mixture({{0.25f, a}, {0.5f, b}});
   const std::vector<Pair> pairs = many_pairs();
   std::vector<Direction> wo, wi;

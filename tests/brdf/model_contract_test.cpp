@@ -111,8 +111,9 @@ TYPED_TEST(ModelContract, IsFiniteAndNotNegative) {
     for (const Pair& p : test_pairs(pair_count, bits)) {
       const Rgb v = eval(model, p.wo, p.wi);
       for (int c = 0; c < 3; ++c) {
-        ASSERT_TRUE(std::isfinite(channel(v, c)) && channel(v, c) >= 0)
-            << model.traits().name << " is " << channel(v, c) << " at wo.z " << p.wo.z << ", wi.z " << p.wi.z;
+        ASSERT_TRUE(std::isfinite(channel_value(v, c)) && channel_value(v, c) >= 0)
+            << model.traits().name << " is " << channel_value(v, c) << " at wo.z " << p.wo.z << ", wi.z "
+            << p.wi.z;
       }
     }
   }

@@ -37,7 +37,7 @@ std::vector<Point> points_of(const std::string& svg) {
   return points;
 }
 
-std::string borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo) {
+std::string borders(const std::vector<TreeSplit>& nodes, const Domain& domain, Direction wo) {
   const DiskImage dark{2, {0, 0, 0, 0}};
   return cell_borders(nodes, domain, wo, 200, 200, 100, dark, {0.1, 1, 0, 1, true});
 }
@@ -53,8 +53,9 @@ double off_the_ring(const std::string& svg, double radius) {
 
 constexpr Domain disk_half{DomainKind::projected_disk, true, 0},
     disk_full{DomainKind::projected_disk, false, 0};
-const std::vector<Split> one_leaf{Split::leaf}, along_y{Split::y, Split::leaf, Split::leaf},
-    along_x{Split::x, Split::leaf, Split::leaf};
+const std::vector<TreeSplit> one_leaf{TreeSplit::leaf},
+    along_y{TreeSplit::y, TreeSplit::leaf, TreeSplit::leaf},
+    along_x{TreeSplit::x, TreeSplit::leaf, TreeSplit::leaf};
 
 TEST(CellBorders, OneLeafHasNone) {
   EXPECT_EQ(borders(one_leaf, disk_half, viewer_at(0.5f)), "");

@@ -49,15 +49,15 @@ TEST(LogRange, AtLeastADecadeAtMostFive) {
 }
 
 TEST(LeafFinder, AgreesWithLeafCells) {
-  const std::vector<Split> nodes{Split::x,    Split::y,    Split::leaf, Split::x,
-                                 Split::leaf, Split::leaf, Split::leaf};
+  const std::vector<TreeSplit> nodes{TreeSplit::x,    TreeSplit::y,    TreeSplit::leaf, TreeSplit::x,
+                                     TreeSplit::leaf, TreeSplit::leaf, TreeSplit::leaf};
   for (const bool half : {false, true}) {
     const Domain domain{DomainKind::equal_area, half, 0};
-    const std::vector<Cell> cells = leaf_cells(nodes, domain);
+    const std::vector<SquareCell> cells = leaf_cells(nodes, domain);
     const LeafFinder finder(nodes, domain);
     ASSERT_EQ(cells.size(), 4U);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const Cell& c = cells[i];
+      const SquareCell& c = cells[i];
       EXPECT_EQ(finder.find({0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)}).index, i);
     }
   }
@@ -65,8 +65,8 @@ TEST(LeafFinder, AgreesWithLeafCells) {
 
 TEST(LeafFinder, RefusesATornTree) {
   const Domain domain{};
-  EXPECT_THROW(LeafFinder({Split::x, Split::leaf}, domain), Error);
-  EXPECT_THROW(LeafFinder({Split::leaf, Split::leaf}, domain), Error);
+  EXPECT_THROW(LeafFinder({TreeSplit::x, TreeSplit::leaf}, domain), Error);
+  EXPECT_THROW(LeafFinder({TreeSplit::leaf, TreeSplit::leaf}, domain), Error);
   EXPECT_THROW(LeafFinder({}, domain), Error);
 }
 

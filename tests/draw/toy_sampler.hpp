@@ -17,8 +17,8 @@ inline float normalised_target(const AnyBrdf& f, const SamplerData& data, Direct
   return data.target(f(point.geometry)) * point.projected_area;
 }
 
-inline void split_evenly(std::vector<Split>& nodes, int levels) {
-  nodes.push_back(levels == 0 ? Split::leaf : levels % 2 == 0 ? Split::x : Split::y);
+inline void split_evenly(std::vector<TreeSplit>& nodes, int levels) {
+  nodes.push_back(levels == 0 ? TreeSplit::leaf : levels % 2 == 0 ? TreeSplit::x : TreeSplit::y);
   if (levels > 0) split_evenly(nodes, levels - 1), split_evenly(nodes, levels - 1);
 }
 
@@ -42,7 +42,7 @@ inline SamplerData toy_sampler(const AnyBrdf& f, const Domain& domain, int level
     data.albedo.cos_theta_o.push_back(c);
     data.albedo.albedo.push_back(float(sum / (n * n)));
   }
-  std::vector<Split> nodes;
+  std::vector<TreeSplit> nodes;
   split_evenly(nodes, levels);
   const draw::LeafFinder finder(nodes, domain);
   const std::size_t leaves = (nodes.size() + 1) / 2;

@@ -123,8 +123,8 @@ TEST(Fits, FactsCountValuesBelowZero) {
   for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
     const auto g = shading_geometry(pairs.wo[i], pairs.wi[i]);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_EQ(channel(f(g), c), std::max(channel(f.unclipped(g), c), 0.f));
-      below[std::size_t(c)] += channel(f.unclipped(g), c) < 0 ? 1 / 4000. : 0;
+      EXPECT_EQ(channel_value(f(g), c), std::max(channel_value(f.unclipped(g), c), 0.f));
+      below[std::size_t(c)] += channel_value(f.unclipped(g), c) < 0 ? 1 / 4000. : 0;
     }
   }
   for (std::size_t c = 0; c < 3; ++c)

@@ -289,7 +289,8 @@ std::vector<double> errors(const RglTable& table, const Pairs& pairs, const std:
     double difference = 0, size = 0;
     for (int c = 0; c < 3; ++c) {
       const double wanted = std::max(reference[3 * i + std::size_t(c)], 0.0);
-      difference = std::max(difference, std::abs(double(channel(f, c)) * double(pairs.wi[i].z) - wanted));
+      difference =
+          std::max(difference, std::abs(double(channel_value(f, c)) * double(pairs.wi[i].z) - wanted));
       size = std::max(size, std::abs(wanted));
     }
     all.push_back(difference / (size + 1e-3));
@@ -336,9 +337,9 @@ TEST(Rgl, MeasuredFilesAgreeWithNumpyAndAnotherRenderer) {
       const Direction wo = renderer.wo[i], wi = renderer.wi[i];
       const Rgb f = eval(table, wo, wi), as_it_is = table.unclipped(shading_geometry(wo, wi));
       for (int c = 0; c < 3; ++c) {
-        const float wanted = channel(renderer.f_cos[i], c);
-        worst = std::max(worst, error(channel(f, c) * wi.z, std::max(wanted, 0.f)));
-        worst_signed = std::max(worst_signed, error(channel(as_it_is, c) * wi.z, wanted));
+        const float wanted = channel_value(renderer.f_cos[i], c);
+        worst = std::max(worst, error(channel_value(f, c) * wi.z, std::max(wanted, 0.f)));
+        worst_signed = std::max(worst_signed, error(channel_value(as_it_is, c) * wi.z, wanted));
       }
       worst_swapped = std::max(worst_swapped, error(eval(table, wi, wo).g * wo.z, renderer.f_cos[i].g));
     }

@@ -22,7 +22,7 @@ double power_integral(int n, double a, double b) {
 }
 
 TEST(Cubature, IsExactForEveryMonomialUpToDegreeSeven) {
-  const Rectangle r{-0.3, 1.7, 0.2, 0.9};
+  const CubatureBox r{-0.3, 1.7, 0.2, 0.9};
   for (int a = 0; a <= 8; ++a) {
     for (int b = 0; a + b <= 8; ++b) {
       CubatureOptions one_region;

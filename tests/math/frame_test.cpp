@@ -17,7 +17,7 @@ Vec3<T> random_direction(Pcg32& u) {
 
 template <class T>
 void expect_orthonormal(Vec3<T> n, T tolerance) {
-  const Frame<T> f = frame_from_normal(n);
+  const LocalFrame<T> f = frame_from_normal(n);
   EXPECT_NEAR(length(f.s), T(1), tolerance);
   EXPECT_NEAR(length(f.t), T(1), tolerance);
   EXPECT_NEAR(dot(f.s, f.t), T(0), tolerance);
@@ -45,7 +45,7 @@ TEST(Frame, HoldsAtThePolesAndNextToThem) {
 }
 
 TEST(Frame, OfTheAxisIsTheAxes) {
-  const Frame<float> f = frame_from_normal(Vec3<float>{0, 0, 1});
+  const LocalFrame<float> f = frame_from_normal(Vec3<float>{0, 0, 1});
   EXPECT_EQ(f.s, (Vec3<float>{1, 0, 0}));
   EXPECT_EQ(f.t, (Vec3<float>{0, 1, 0}));
 }

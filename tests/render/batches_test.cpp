@@ -115,7 +115,7 @@ Image sky_picture() {
 
 TEST(Batches, SkiesAndLights) {
   Scene scene = corner();
-  const Frame<float> turned = frame_from_normal(Direction{.6f, 0, .8f});
+  const LocalFrame<float> turned = frame_from_normal(Direction{.6f, 0, .8f});
   for (const Environment& sky : {Environment({1, 2, 3}), Environment(sky_picture(), turned, 2, "sky")}) {
     scene.environment = sky;
     const Lights lights(scene);

@@ -34,12 +34,12 @@ double worst_channel(const F& f, const Sampler<F>& s, Direction wo, int channels
   constexpr int n = 40'000;
   for (int i = 0; i < n; ++i) {
     if (const auto drawn = s.exact.sample(wo, u)) {
-      for (int c = 0; c < channels; ++c) sum[std::size_t(c)] += double(channel(drawn->weight, c)) / n;
+      for (int c = 0; c < channels; ++c) sum[std::size_t(c)] += double(channel_value(drawn->weight, c)) / n;
     }
   }
   double worst = 0;
   for (int c = 0; c < channels; ++c) {
-    const auto g = [&f, c](Direction o, Direction i) { return channel(eval(f, o, i), c); };
+    const auto g = [&f, c](Direction o, Direction i) { return channel_value(eval(f, o, i), c); };
     const double expected = reference_albedo(target_function(AnyBrdf(g)), wo).value;
     worst = std::max(worst, std::abs(sum[std::size_t(c)] / expected - 1));
   }
@@ -73,9 +73,10 @@ TEST(Channels, NumbersAndArraysAreValues) {
   const auto yes = [](Direction, Direction i) { return i.z > 0.5f; };
   const auto rgb = [](Direction, Direction) { return std::array<double, 3>{0.1, 0.2, 0.3}; };
   const auto five = [](Direction, Direction i) { return std::array<float, 5>{0.1f, 0.2f, 0.3f, i.z, 0.5f}; };
-  static_assert(std::is_same_v<ValueOf<decltype(whole)>, float> && std::is_same_v<ValueOf<decltype(wide)>, float> &&
-                std::is_same_v<ValueOf<decltype(yes)>, float> && std::is_same_v<ValueOf<decltype(rgb)>, Rgb> &&
-                std::is_same_v<ValueOf<decltype(five)>, Spectrum>);
+  static_assert(
+      std::is_same_v<ValueOf<decltype(whole)>, float> && std::is_same_v<ValueOf<decltype(wide)>, float> &&
+      std::is_same_v<ValueOf<decltype(yes)>, float> && std::is_same_v<ValueOf<decltype(rgb)>, Rgb> &&
+      std::is_same_v<ValueOf<decltype(five)>, Spectrum>);
   EXPECT_EQ(AnyBrdf(five).channels(), 5);
   EXPECT_NEAR(make_sampler(whole).exact.albedo(wo_at(30)), pi, 1e-3);
   EXPECT_LT(worst_channel(five, make_sampler(five), wo_at(40), 5), 0.02);
@@ -146,7 +147,9 @@ TEST(Frames, WhatDependsOnTheAzimuthIsRefused) {
   const auto bright = [](Direction, Direction i) {
     return 0.2f * (std::abs(std::atan2(i.y, i.x) - 1) < 0.05f ? 1.3f : 1.f);
   };
-  const auto wave = [](Direction, Direction i) { return 0.2f * (1 + 0.015f * std::cos(2 * std::atan2(i.y, i.x))); };
+  const auto wave = [](Direction, Direction i) {
+    return 0.2f * (1 + 0.015f * std::cos(2 * std::atan2(i.y, i.x)));
+  };
   EXPECT_TRUE(has(refusal(bright), "it is anisotropic")) << refusal(bright);
   EXPECT_TRUE(has(refusal(bright), "to 0.26") || has(refusal(bright), "from 0.26")) << refusal(bright);
   EXPECT_TRUE(has(refusal(wave), "it is anisotropic"));
@@ -170,13 +173,16 @@ TEST(Scale, SquaresMayLeaveTheRangeOfFloat) {
     const SamplerData data = build(AnyBrdf(f));
     EXPECT_NE(data.target.scale, 1) << scale;
     const auto s = make_sampler(f, data);
-    EXPECT_NEAR(double(s.exact.albedo(wo_at(40))) / double(data.target.scale) / double(scale) / expected, 1, 1e-3);
+    EXPECT_NEAR(double(s.exact.albedo(wo_at(40))) / double(data.target.scale) / double(scale) / expected, 1,
+                1e-3);
     Pcg32 u(1);
     std::vector<Direction> wo(2000, wo_at(40, 2));
     std::vector<DirectionSample<Rgb>> batch(wo.size());
     sample_batch(s.exact, wo, u, batch);
     double sum = 0;
-    for (const auto& d : batch) sum += double(Target{}(Rgb{d.weight.r / scale, d.weight.g / scale, d.weight.b / scale})) / double(wo.size());
+    for (const auto& d : batch)
+      sum += double(Target{}(Rgb{d.weight.r / scale, d.weight.g / scale, d.weight.b / scale})) /
+             double(wo.size());
     EXPECT_NEAR(sum / expected, 1, 1e-3) << scale;
   }
   EXPECT_TRUE(has(refusal(lobe(2e38f)), "leave the range of float")) << refusal(lobe(2e38f));
@@ -207,10 +213,14 @@ TEST(Options, OutOfRangeAreRefusedByName) {
   }
   for (const float bad : {0.f, -1.f, nan}) {
     EXPECT_TRUE(has(with([&](BuildOptions& o) { o.albedo_error = bad; }), "albedo_error is")) << bad;
-    EXPECT_TRUE(has(with([&](BuildOptions& o) { o.one_shot_variance = bad; }), "one_shot_variance is")) << bad;
+    EXPECT_TRUE(has(with([&](BuildOptions& o) { o.one_shot_variance = bad; }), "one_shot_variance is"))
+        << bad;
   }
   EXPECT_TRUE(has(with([](BuildOptions& o) { o.target = {TargetKind::channel, 1}; }), "channel 1 of 1"));
-  EXPECT_TRUE(has(with([](BuildOptions& o) { o.domain = Domain{DomainKind::stretched, true, 2}; }), "exponent"));
+  EXPECT_TRUE(has(with([](BuildOptions& o) {
+                    o.domain = Domain{DomainKind::stretched, true, 2};
+                  }),
+                  "exponent"));
   EXPECT_TRUE(has(with([](BuildOptions& o) { o.max_evaluations = 0; }), "max_evaluations is 0"));
 }
 
@@ -225,7 +235,8 @@ TEST(Options, ABuildThatMayNotEvaluateMuchEndsAndSaysSo) {
   options.max_evaluations = 1'500'000;
   const SamplerData data = build(material("ggx:alpha=0.002"), options);
   ASSERT_FALSE(data.report.notes.empty());
-  EXPECT_TRUE(has(data.report.notes[0], "budget") || has(data.report.notes[0], "albedo")) << data.report.notes[0];
+  EXPECT_TRUE(has(data.report.notes[0], "budget") || has(data.report.notes[0], "albedo"))
+      << data.report.notes[0];
   EXPECT_LT(data.report.evaluations, 30'000'000U);
   EXPECT_TRUE(build(material("ggx:alpha=0.2")).report.notes.empty());
 }

@@ -191,8 +191,9 @@ TEST(Options, FewerTrialsCostLeavesAndAreKept) {
 
 TEST(Options, TheDomainCanBeChosen) {
   const AnyBrdf f = [](Direction wo, Direction wi) { return 0.3f + 0.1f * dot(wo, wi); };
-  for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
-                                DomainKind::back_vector, DomainKind::mirror_vector, DomainKind::normal_vector}) {
+  for (const DomainKind kind :
+       {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector, DomainKind::back_vector,
+        DomainKind::mirror_vector, DomainKind::normal_vector}) {
     for (const bool half : {true, false}) {
       BuildOptions options;
       options.domain = Domain{kind, half, kind == DomainKind::stretched ? 1.2f : 0.f};

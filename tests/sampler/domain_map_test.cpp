@@ -15,7 +15,8 @@ constexpr double elevations_deg[] = {0, 0.01, 15, 45, 70, 85, 89, 89.9, 89.999};
 std::vector<Domain> domains(bool half) {
   return {{DomainKind::projected_disk, half, 0}, {DomainKind::equal_area, half, 0},
           {DomainKind::half_vector, half, 0},    {DomainKind::back_vector, half, 0},
-          {DomainKind::stretched, half, 1.5f}, {DomainKind::mirror_vector, half, 0}, {DomainKind::normal_vector, half, 0}, {DomainKind::stretched, half, 1.1f}};
+          {DomainKind::stretched, half, 1.5f},   {DomainKind::mirror_vector, half, 0},
+          {DomainKind::normal_vector, half, 0},  {DomainKind::stretched, half, 1.1f}};
 }
 std::string label(const Domain& d, double theta) {
   return std::string(name_of(d.kind)) + (d.half ? " half" : "") + " theta_o " + std::to_string(theta);

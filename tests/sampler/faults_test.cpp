@@ -23,7 +23,7 @@ std::size_t slab_of(const Partition& partition, double theta_deg) {
   const float theta = float(theta_deg * pi_v<double> / 180);
   return find_slab(partition, {&theta, 1});
 }
-std::size_t heaviest(const Tree& tree) {
+std::size_t heaviest(const CanonicalTree& tree) {
   return std::size_t(std::max_element(tree.mass.begin(), tree.mass.end()) - tree.mass.begin());
 }
 
@@ -119,7 +119,7 @@ TEST(FaultsTwin, BentByTwoPerCent) {
     EXPECT_FALSE(check_weights(tally, bins, options).passed) << theta;
     // One-shot is right whatever its tree says.
     SamplerData data = good_data();
-    Tree& tree = data.one_shot[slab_of(data.one_shot_partition, theta)];
+    CanonicalTree& tree = data.one_shot[slab_of(data.one_shot_partition, theta)];
     tree.mass[heaviest(tree)] /= 2;
     const auto other = make_sampler(plastic(), data);
     const Tally loose = tally_of(erase(other.one_shot), bins, options);

@@ -27,8 +27,8 @@ class MajorantField {
 
   // T / (albedo M q) at (theta_o, x, y), each as a share of its range.
   double ratio(const AttackPoint& at, float sign_y = 1) const {
-    const Coordinate& range = data_.exact_partition.coordinates[0];
-    const float theta = lerp(float(at[0]), range.lo, range.hi);
+    const KnownCoordinate& range = data_.exact_partition.coordinates[0];
+    const float theta = linear_mix(float(at[0]), range.lo, range.hi);
     const float cosine = clamp(cos(theta), min_cos_theta_o, 1.f);
     const Direction wo{sqrt((1 - cosine) * (1 + cosine)), 0, cosine};
     const Vec2<float> p{2 * float(at[1]) - 1, data_.domain.half ? float(at[2]) : 2 * float(at[2]) - 1};
@@ -49,7 +49,7 @@ class MajorantField {
       i = (node.split_x ? p.x : p.y) < node.at ? i + 1 : node.upper;
     }
     const auto leaf = std::size_t(slab.nodes[std::size_t(i)].leaf);
-    const Cell& c = slab.cells[leaf];
+    const SquareCell& c = slab.cells[leaf];
     const MajorantTree& tree = data_.exact[s];
     const double share = double(c.x1 - c.x0) * double(c.y1 - c.y0) / (data_.domain.half ? 2 : 4);
     const double x = 2 * double((p.x - c.x0) / (c.x1 - c.x0)) - 1,
@@ -74,21 +74,21 @@ class MajorantField {
   struct Slab {
     double sum = 0;
     std::vector<Node> nodes;
-    std::vector<Cell> cells;
+    std::vector<SquareCell> cells;
   };
   // Appends the subtree at `node`; returns the box that its leaves fill.
-  Cell add(const MajorantTree& tree, Slab& slab, std::size_t& node, std::size_t& leaf) const {
-    const Split split = tree.nodes[node++];
+  SquareCell add(const MajorantTree& tree, Slab& slab, std::size_t& node, std::size_t& leaf) const {
+    const TreeSplit split = tree.nodes[node++];
     const std::size_t self = slab.nodes.size();
     slab.nodes.emplace_back();
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       slab.nodes[self].leaf = std::uint32_t(leaf);
       return slab.cells[leaf++];
     }
-    const Cell lower = add(tree, slab, node, leaf);
+    const SquareCell lower = add(tree, slab, node, leaf);
     const int upper_node = int(slab.nodes.size());
-    const Cell upper = add(tree, slab, node, leaf);
-    slab.nodes[self] = {split == Split::x, split == Split::x ? upper.x0 : upper.y0, upper_node, 0};
+    const SquareCell upper = add(tree, slab, node, leaf);
+    slab.nodes[self] = {split == TreeSplit::x, split == TreeSplit::x ? upper.x0 : upper.y0, upper_node, 0};
     return {lower.x0, upper.x1, lower.y0, upper.y1};
   }
 

@@ -34,7 +34,7 @@ void for_each_slab(const PackedForest& forest, std::size_t trees, Visit&& visit)
 // The probability of every leaf, summed over its own and the aliased buckets, is its mass exactly; one
 // leaf takes up what is missing to a multiple of the count.
 TEST(Pack, AliasTablesAreExactInIntegers) {
-  const auto check = [](const PackedForest& forest, const PackedSlab& slab, const Tree& tree) {
+  const auto check = [](const PackedForest& forest, const PackedSlab& slab, const CanonicalTree& tree) {
     ASSERT_EQ(slab.count, tree.mass.size());
     const PackedLeaf* leaves = forest.leaves.data() + slab.first;
     std::vector<std::uint64_t> probability(slab.count);

@@ -29,10 +29,10 @@ TEST(SamplerData, RefusesEveryKindOfDamage) {
   refused("known coordinates", [](auto& d) { d.one_shot_partition.coordinates.push_back({"alpha", 0, 1}); });
   refused("a tree too few", [](auto& d) { d.exact.pop_back(); });
   refused("a tree too many", [](auto& d) { d.one_shot.push_back(d.one_shot[0]); });
-  refused("tree goes on", [](auto& d) { d.exact[0].nodes.push_back(Split::leaf); });
+  refused("tree goes on", [](auto& d) { d.exact[0].nodes.push_back(TreeSplit::leaf); });
   refused("tree incomplete", [](auto& d) { d.exact[0].nodes.pop_back(); });
   refused("tree empty", [](auto& d) { d.one_shot[0] = {}; });
-  refused("unknown node", [](auto& d) { d.exact[0].nodes[0] = Split(3); });
+  refused("unknown node", [](auto& d) { d.exact[0].nodes[0] = TreeSplit(3); });
   refused("a mass missing", [](auto& d) { d.exact[0].mass.pop_back(); });
   refused("a slope missing", [](auto& d) { d.exact[0].slope_x.pop_back(); });
   refused("a slope too many", [](auto& d) { d.one_shot[0].slope_y.push_back(0); });
@@ -55,33 +55,33 @@ TEST(SamplerData, RefusesEveryKindOfDamage) {
   refused("exponent", [](auto& d) { d.domain.exponent = 2; });
   refused("exponent", [](auto& d) { d.domain.exponent = std::nanf(""); });
   refused("depth", [](auto& d) {  // a comb of 16 levels along x
-    Tree& tree = d.exact[0];
-    tree.nodes.assign(16, Split::x);
-    tree.nodes.insert(tree.nodes.end(), 17, Split::leaf);
+    CanonicalTree& tree = d.exact[0];
+    tree.nodes.assign(16, TreeSplit::x);
+    tree.nodes.insert(tree.nodes.end(), 17, TreeSplit::leaf);
     tree.mass.assign(17, 1), tree.slope_x.assign(17, 0), tree.slope_y.assign(17, 0);
   });
 }
 
 TEST(LeafCells, TileTheSquare) {
   const SamplerData& d = good_data();
-  const auto tiles = [&](const Tree& tree, const Domain& domain) {
+  const auto tiles = [&](const CanonicalTree& tree, const Domain& domain) {
     const auto cells = leaf_cells(tree.nodes, domain);
     ASSERT_EQ(cells.size(), tree.mass.size());
     double area = 0;
-    for (const Cell& c : cells) area += double(c.x1 - c.x0) * double(c.y1 - c.y0);
+    for (const SquareCell& c : cells) area += double(c.x1 - c.x0) * double(c.y1 - c.y0);
     EXPECT_DOUBLE_EQ(area, domain.half ? 2 : 4);
     Pcg32 u(1);
     for (int i = 0; i < 200; ++i) {
       const float x = 2 * to_unit_float(u()) - 1;
       const float y = domain.half ? to_unit_float(u()) : 2 * to_unit_float(u()) - 1;
       int holders = 0;
-      for (const Cell& c : cells) holders += x >= c.x0 && x < c.x1 && y >= c.y0 && y < c.y1;
+      for (const SquareCell& c : cells) holders += x >= c.x0 && x < c.x1 && y >= c.y0 && y < c.y1;
       EXPECT_EQ(holders, 1);
     }
   };
   for (const bool half : {true, false}) {
-    for (const Tree& tree : d.exact) tiles(tree, {DomainKind::equal_area, half, 0});
-    for (const Tree& tree : d.one_shot) tiles(tree, {DomainKind::equal_area, half, 0});
+    for (const CanonicalTree& tree : d.exact) tiles(tree, {DomainKind::equal_area, half, 0});
+    for (const CanonicalTree& tree : d.one_shot) tiles(tree, {DomainKind::equal_area, half, 0});
   }
 }
 

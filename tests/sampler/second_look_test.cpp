@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a first build misses, and what the builder's second look makes of it: needles, leaps over theta_o, steps,
-// albedo tables that were trusted too much.
+// What a first build misses, and what the builder's second look makes of it: needles, leaps over theta_o,
+// steps, albedo tables that were trusted too much.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,8 @@ struct ToldBump : Bump {
 
 // The albedo of a narrow Gaussian bump on 0.2, to the square of its width.
 double albedo_of(const Bump& b) {
-  return 0.2 * pi_v<double> + double(b.height) * pi_v<double> * sqr(double(b.width)) * std::cos(double(b.theta));
+  return 0.2 * pi_v<double> +
+         double(b.height) * pi_v<double> * sqr(double(b.width)) * std::cos(double(b.theta));
 }
 
 template <class F>
@@ -52,7 +53,8 @@ void expect_exact(const F& f, double albedo, const std::string& what) {
     }
     EXPECT_LT(statistics.overshoot_sum / double(statistics.trials), 1e-4) << what << theta;
     EXPECT_NEAR(shot / albedo, 1, 5 * std::sqrt((square - shot * shot) / n) / albedo + 3e-4) << what << theta;
-    EXPECT_NEAR(inside, 1 - 0.2 * pi_v<double> / albedo, 5 * 0.5 / std::sqrt(double(n)) + 1e-3) << what << theta;
+    EXPECT_NEAR(inside, 1 - 0.2 * pi_v<double> / albedo, 5 * 0.5 / std::sqrt(double(n)) + 1e-3)
+        << what << theta;
   }
 }
 
@@ -157,7 +159,8 @@ TEST(Steps, InThetaKeepThePromise) {
   EXPECT_LE(data.report.expected_trials, 1.2501f);
   const double true_albedo = pi_v<double> * (1 - sqr(0.7071f));
   for (const double theta : {5., 45., 88.}) {
-    EXPECT_NEAR(double(albedo_at(data.albedo, wo_at(theta).z)) / true_albedo, 1, double(data.albedo.relative_error));
+    EXPECT_NEAR(double(albedo_at(data.albedo, wo_at(theta).z)) / true_albedo, 1,
+                double(data.albedo.relative_error));
   }
 }
 
@@ -169,7 +172,8 @@ TEST(Steps, OfASectorStateTheErrorThatIsHad) {
   const SamplerData data = build(AnyBrdf(f));
   const double true_albedo = pi_v<double> * (1. / 6 + 0.05 * 5 / 6);
   for (const double theta : {5., 30., 61., 88.}) {
-    EXPECT_NEAR(double(albedo_at(data.albedo, wo_at(theta).z)) / true_albedo, 1, double(data.albedo.relative_error))
+    EXPECT_NEAR(double(albedo_at(data.albedo, wo_at(theta).z)) / true_albedo, 1,
+                double(data.albedo.relative_error))
         << theta;
   }
 }

@@ -30,7 +30,8 @@ TEST(Values, StaticErasedAndBatchDrawTheSame) {
     const auto same = [&](const auto& x, const auto& y, float tolerance) {
       ASSERT_TRUE(x && y);
       EXPECT_NEAR(x->pdf / y->pdf, 1, tolerance);
-      for (int k = 0; k < 3; ++k) EXPECT_NEAR(channel(x->weight, k), channel(y->weight, k), tolerance);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(channel_value(x->weight, k), channel_value(y->weight, k), tolerance);
       EXPECT_EQ(x->wi, y->wi);
     };
     same(a.exact.sample(wo, ua), b.exact.sample(wo, ub), 0);
@@ -78,8 +79,8 @@ TEST(Values, EveryTargetKeepsTheSupportOfAllChannels) {
   };
   const Direction wo = wo_at(60, 1);
   const auto channel_albedo = [&](int k) {
-    return reference_albedo(target_function([f, k](Direction o, Direction i) { return channel(f(o, i), k); }),
-                            wo)
+    return reference_albedo(
+               target_function([f, k](Direction o, Direction i) { return channel_value(f(o, i), k); }), wo)
         .value;
   };
   for (const Target target : {Target{TargetKind::luminance, 0}, Target{TargetKind::maximum, 0},
@@ -94,11 +95,11 @@ TEST(Values, EveryTargetKeepsTheSupportOfAllChannels) {
     for (int k = 0; k < 3; ++k) {
       const double albedo = channel_albedo(k);
       EXPECT_LT(std::abs(z_score(albedo, 100'000,
-                                 [&] { return double(channel(s.exact.sample(wo, u)->weight, k)); })),
+                                 [&] { return double(channel_value(s.exact.sample(wo, u)->weight, k)); })),
                 4.5)
           << int(target.kind) << ' ' << k;
       EXPECT_LT(std::abs(z_score(albedo, 100'000,
-                                 [&] { return double(channel(s.one_shot.sample(wo, u)->weight, k)); })),
+                                 [&] { return double(channel_value(s.one_shot.sample(wo, u)->weight, k)); })),
                 4.5)
           << int(target.kind) << ' ' << k;
     }

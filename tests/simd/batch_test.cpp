@@ -32,7 +32,8 @@ float difference(const DirectionSample<Value>& a, const DirectionSample<Value>& 
   float worst = length(a.wi - b.wi);
   worst = max(worst, abs(a.pdf - b.pdf) / max(b.pdf, 1e-30f));
   for (int c = 0; c < channels_of(b.weight); ++c) {
-    worst = max(worst, abs(channel(a.weight, c) - channel(b.weight, c)) / max(channel(b.weight, c), 1e-30f));
+    worst = max(worst, abs(channel_value(a.weight, c) - channel_value(b.weight, c)) /
+                           max(channel_value(b.weight, c), 1e-30f));
   }
   return worst;
 }
@@ -45,7 +46,7 @@ int unlike(const Sampler& sampler, std::span<const Direction> wo, Pcg32 u,
   for (std::size_t i = 0; i < wo.size(); ++i) {
     const auto one = sampler.sample(wo[i], u);
     count += one ? !(difference(batch[i], *one) < 1e-5f)
-                 : batch[i].flags != 0 || batch[i].pdf != 0 || channel(batch[i].weight, 0) != 0;
+                 : batch[i].flags != 0 || batch[i].pdf != 0 || channel_value(batch[i].weight, 0) != 0;
   }
   return count;
 }

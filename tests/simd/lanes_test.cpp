@@ -34,9 +34,9 @@ int differences(F&& f, int rounds, float lo = -2, float hi = 2) {
   for (int round = 0; round < rounds; ++round) {
     float a[lane_count], b[lane_count], c[lane_count];
     for (std::size_t i = 0; i < lane_count; ++i) {
-      a[i] = lerp(to_unit_float(u()), lo, hi);
-      b[i] = (u() & 7U) == 0 ? a[i] : lerp(to_unit_float(u()), lo, hi);  // equal ones too
-      c[i] = lerp(to_unit_float(u()), lo, hi);
+      a[i] = linear_mix(to_unit_float(u()), lo, hi);
+      b[i] = (u() & 7U) == 0 ? a[i] : linear_mix(to_unit_float(u()), lo, hi);  // equal ones too
+      c[i] = linear_mix(to_unit_float(u()), lo, hi);
     }
     const Lanes r = f(Lanes::load(a), Lanes::load(b), Lanes::load(c));
     for (std::size_t i = 0; i < lane_count; ++i) different += bits(r[i]) != bits(f(a[i], b[i], c[i]));
@@ -46,7 +46,7 @@ int differences(F&& f, int rounds, float lo = -2, float hi = 2) {
 
 TEST(Lanes, ArithmeticIsThatOfFloats) {
   EXPECT_EQ(differences([](auto a, auto b, auto c) { return (a + b) * c - a / b; }, 1000), 0);
-  EXPECT_EQ(differences([](auto a, auto b, auto c) { return -lerp(a, b, sqr(c)); }, 1000), 0);
+  EXPECT_EQ(differences([](auto a, auto b, auto c) { return -linear_mix(a, b, sqr(c)); }, 1000), 0);
   EXPECT_EQ(differences([](auto a, auto b, auto c) { return clamp(a, min(b, c), max(b, c)); }, 1000), 0);
   EXPECT_EQ(differences([](auto a, auto b, auto) { return abs(a) + sqrt(abs(b)); }, 1000), 0);
   EXPECT_EQ(differences([](auto a, auto b, auto c) { return by_sign(a, b, c); }, 1000), 0);
@@ -131,8 +131,9 @@ TEST(Lanes, TheOneFormulaOfEachModelServesLanes) {
 
 TEST(Lanes, PointsAreLiftedAsByFloats) {
   Pcg32 u(13);
-  for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
-                                DomainKind::back_vector, DomainKind::stretched, DomainKind::mirror_vector, DomainKind::normal_vector}) {
+  for (const DomainKind kind :
+       {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector, DomainKind::back_vector,
+        DomainKind::stretched, DomainKind::mirror_vector, DomainKind::normal_vector}) {
     const Domain domain{kind, false, 1.5f};
     int different = 0;
     for (int round = 0; round < 300; ++round) {

@@ -15,7 +15,7 @@ struct CosineToy {
   std::optional<DirectionSample<Spectrum>> sample(Direction wo, U& u) const {
     const float r2 = to_unit_float(u()), phi = 2 * pi * to_unit_float(u()), r = sqrt(r2);
     const Direction wi{r * cos(phi), r * sin(phi), sqrt(1 - r2)};
-    return DirectionSample<Spectrum>{wi, wi.z / pi, scaled(eval(f, wo, wi), planted * pi)};
+    return DirectionSample<Spectrum>{wi, wi.z / pi, scaled_value(eval(f, wo, wi), planted * pi)};
   }
   float pdf(Direction, Direction wi) const { return wi.z / pi * claimed; }
 };
@@ -29,7 +29,7 @@ struct DenseUniformToy {
   std::optional<DirectionSample<Spectrum>> sample(Direction wo, U& u) const {
     const float z = 1 - to_unit_float(u()), phi = 2 * pi * to_unit_float(u()), r = sqrt(max(0.f, 1 - z * z));
     const Direction wi{r * cos(phi), r * sin(phi), z};
-    return DirectionSample<Spectrum>{wi, pdf(wo, wi), scaled(eval(f, wo, wi), 2 * pi * z)};
+    return DirectionSample<Spectrum>{wi, pdf(wo, wi), scaled_value(eval(f, wo, wi), 2 * pi * z)};
   }
   float pdf(Direction, Direction wi) const { return lying ? wi.z / pi : 1 / (2 * pi); }
 };
@@ -44,7 +44,7 @@ struct UniformToy {
     const float z = 1 - to_unit_float(u()), turn = to_unit_float(u()), r = sqrt(max(0.f, 1 - z * z));
     if (turn < lost) return std::nullopt;
     const Direction wi{r * cos(2 * pi * turn), r * sin(2 * pi * turn), z};
-    return DirectionSample<Spectrum>{wi, 1 / (2 * pi), scaled(eval(f, wo, wi), 2 * pi * z)};
+    return DirectionSample<Spectrum>{wi, 1 / (2 * pi), scaled_value(eval(f, wo, wi), 2 * pi * z)};
   }
 };
 

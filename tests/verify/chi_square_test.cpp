@@ -36,8 +36,8 @@ TEST(Bins, HaveNearlyEqualMassAndTheRightSum) {
 TEST(Bins, FindAgreesWithTheBoxes) {
   const Bins bins = equal_mass_bins(target_function(low_smooth(300)), direction_at(50, 120));
   for (std::size_t i = 0; i < bins.boxes.size(); ++i) {
-    const Rectangle& r = bins.boxes[i];
-    const auto w = bins.chart.direction({lerp(0.5, r.x0, r.x1), lerp(0.5, r.y0, r.y1)}).w;
+    const CubatureBox& r = bins.boxes[i];
+    const auto w = bins.chart.direction({linear_mix(0.5, r.x0, r.x1), linear_mix(0.5, r.y0, r.y1)}).w;
     EXPECT_EQ(bins.find({float(w.x), float(w.y), float(w.z)}), i);
   }
 }

@@ -30,7 +30,7 @@ struct CosineSampler {
     const Direction wi =
         disk_to_hemisphere_projected(Vec2<float>{float(r * std::cos(phi)), float(r * std::sin(phi))});
     if (!(wi.z > 0)) return std::nullopt;
-    return DirectionSample<Value>{wi, wi.z / pi, scaled(eval(f, wo, wi), pi), sample_reflection};
+    return DirectionSample<Value>{wi, wi.z / pi, scaled_value(eval(f, wo, wi), pi), sample_reflection};
   }
   float pdf(Direction, Direction wi) const { return max(wi.z, 0.f) / pi; }
 };
@@ -52,7 +52,7 @@ struct LowSmoothSampler {
       const Direction wi{float(x), float(y), float(std::sqrt(z2))};
       const double lobe = 1 / (1 + b * d * d);
       const double p = lobe / low_smooth_albedo(1, b, double(wo.z)) * std::sqrt(z2);
-      return DirectionSample<Rgb>{wi, float(p), scaled(f.a, float(lobe * std::sqrt(z2) / p)),
+      return DirectionSample<Rgb>{wi, float(p), scaled_value(f.a, float(lobe * std::sqrt(z2) / p)),
                                   sample_reflection};
     }
   }

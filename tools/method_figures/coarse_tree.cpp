@@ -12,7 +12,7 @@ namespace reflectree::method {
 
 namespace {
 
-double share_of(const Cell& c, const Domain& domain) {
+double share_of(const SquareCell& c, const Domain& domain) {
   return double(c.x1 - c.x0) * double(c.y1 - c.y0) / (domain.half ? 2 : 4);
 }
 
@@ -24,12 +24,12 @@ class Cutter {
     for (const std::uint32_t m : fine.mass) total_ += m;
   }
 
-  void visit(Cell box, int depth) {
-    const Split split = fine_.nodes[node_++];
-    const bool open = depth > 0 && split != Split::leaf;
-    if (depth >= 0) coarse_.nodes.push_back(open ? split : Split::leaf);
+  void visit(SquareCell box, int depth) {
+    const TreeSplit split = fine_.nodes[node_++];
+    const bool open = depth > 0 && split != TreeSplit::leaf;
+    if (depth >= 0) coarse_.nodes.push_back(open ? split : TreeSplit::leaf);
     if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0, 0, 0, 0});
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       const double mean =
           double(fine_.volume) * fine_.mass[leaf_] / total_ / share_of(cells_[leaf_], domain_);
       const double gx = fine_.slope_x[leaf_] / 128.0, gy = fine_.slope_y[leaf_] / 128.0;
@@ -45,8 +45,8 @@ class Cutter {
       ++leaf_;
       return;
     }
-    Cell lower_half = box, upper_half = box;
-    if (split == Split::x) {
+    SquareCell lower_half = box, upper_half = box;
+    if (split == TreeSplit::x) {
       lower_half.x1 = upper_half.x0 = 0.5f * (box.x0 + box.x1);
     } else {
       lower_half.y1 = upper_half.y0 = 0.5f * (box.y0 + box.y1);
@@ -60,7 +60,7 @@ class Cutter {
   const MajorantTree& fine_;
   CoarseTree& coarse_;
   Domain domain_;
-  std::vector<Cell> cells_;
+  std::vector<SquareCell> cells_;
   double total_ = 0;
   std::size_t node_ = 0, leaf_ = 0;
 };
@@ -83,9 +83,9 @@ CoarseTree cut(const Example& example, int depth) {
     constexpr int n = 48;
     for (int k = 0; k < n * n; ++k) {
       const float u = (float(k % n) + 0.5f) / n, v = (float(k) / n + 0.5f / n) / n;
-      const Cell& c = leaf.cell;
-      leaf.integral +=
-          normalised_target(example, {lerp(u, c.x0, c.x1), lerp(v, c.y0, c.y1)}) * leaf.share / (n * n);
+      const SquareCell& c = leaf.cell;
+      leaf.integral += normalised_target(example, {linear_mix(u, c.x0, c.x1), linear_mix(v, c.y0, c.y1)}) *
+                       leaf.share / (n * n);
     }
   }
   return coarse;

@@ -10,7 +10,7 @@
 namespace reflectree::method {
 
 struct CoarseLeaf {
-  Cell cell;
+  SquareCell cell;
   double share = 0;                 // of the square
   double majorant = 0;              // of the leaf; of merged leaves, the largest of their bounds
   double slope_x = 0, slope_y = 0;  // of the leaf's shape; merged leaves are flat
@@ -25,7 +25,7 @@ struct CoarseLeaf {
 };
 
 struct CoarseTree {
-  std::vector<Split> nodes;        // preorder
+  std::vector<TreeSplit> nodes;    // preorder
   std::vector<CoarseLeaf> leaves;  // in preorder
 };
 

@@ -15,7 +15,7 @@ namespace {
 struct Node {
   int depth;
   double from, to;  // the interval
-  Cell cell;
+  SquareCell cell;
 };
 
 // All nodes of the tree with their intervals.
@@ -26,16 +26,16 @@ class Walk {
   }
   std::vector<Node> nodes;
 
-  double visit(Cell cell, int depth, double from) {
+  double visit(SquareCell cell, int depth, double from) {
     const std::size_t self = nodes.size();
     nodes.push_back({depth, from, from, cell});
-    const Split split = tree_.nodes[node_++];
+    const TreeSplit split = tree_.nodes[node_++];
     double to = from;
-    if (split == Split::leaf) {
+    if (split == TreeSplit::leaf) {
       to += tree_.leaves[leaf_++].mass / total_;
     } else {
-      Cell lower_half = cell, upper_half = cell;
-      if (split == Split::x) {
+      SquareCell lower_half = cell, upper_half = cell;
+      if (split == TreeSplit::x) {
         lower_half.x1 = upper_half.x0 = 0.5f * (cell.x0 + cell.x1);
       } else {
         lower_half.y1 = upper_half.y0 = 0.5f * (cell.y0 + cell.y1);
@@ -60,7 +60,7 @@ Figure descent_figure(const Example& example) {
   constexpr double u = 0.42;
   const CoarseTree tree = cut(example, depth);
   Walk walk(tree);
-  const Cell root{-1, 1, domain.half ? 0.f : -1.f, 1};
+  const SquareCell root{-1, 1, domain.half ? 0.f : -1.f, 1};
   walk.visit(root, 0, 0);
 
   Figure figure{840, 330, "Choosing a leaf", {}, {}};

@@ -11,22 +11,24 @@ using namespace draw;
 
 namespace {
 
-constexpr Cell ring_above{-1, 1, 0.5f, 0.625f}, ring_below{-1, 1, -0.625f, -0.5f}, wedge{0.5f, 0.625f, 0, 1};
+constexpr SquareCell ring_above{-1, 1, 0.5f, 0.625f}, ring_below{-1, 1, -0.625f, -0.5f},
+    wedge{0.5f, 0.625f, 0, 1};
 
-void split_evenly(std::vector<Split>& nodes, int levels) {
-  nodes.push_back(levels == 0 ? Split::leaf : levels % 2 == 0 ? Split::x : Split::y);
+void split_evenly(std::vector<TreeSplit>& nodes, int levels) {
+  nodes.push_back(levels == 0 ? TreeSplit::leaf : levels % 2 == 0 ? TreeSplit::x : TreeSplit::y);
   if (levels > 0) split_evenly(nodes, levels - 1), split_evenly(nodes, levels - 1);
 }
 
 // The image of a cell on the disk about (x, y).
-std::string cell_image(const Domain& domain, Direction wo, const Cell& c, double x, double y, double radius,
-                       std::string_view css_class) {
+std::string cell_image(const Domain& domain, Direction wo, const SquareCell& c, double x, double y,
+                       double radius, std::string_view css_class) {
   PathData outline;
   constexpr int steps = 96;
   const auto edge = [&](Vec2<float> from, Vec2<float> to) {
     for (int k = 0; k < steps; ++k) {
       const float t = float(k) / steps;
-      const Direction wi = lift(domain, wo, {lerp(t, from.x, to.x), lerp(t, from.y, to.y)}).geometry.wi;
+      const Direction wi =
+          lift(domain, wo, {linear_mix(t, from.x, to.x), linear_mix(t, from.y, to.y)}).geometry.wi;
       const double px = x + radius * double(wi.x), py = y - radius * double(wi.y);
       outline.empty() ? outline.move_to(px, py) : outline.line_to(px, py);
     }
@@ -40,7 +42,7 @@ std::string cell_image(const Domain& domain, Direction wo, const Cell& c, double
 }  // namespace
 
 Figure domains_figure() {
-  std::vector<Split> nodes;
+  std::vector<TreeSplit> nodes;
   split_evenly(nodes, 8);  // 16 x 16
   const Direction wo = viewer_at(50 * pi / 180);
   const double radius = 104, width = 268, height = 280, x = width / 2, y = 146;

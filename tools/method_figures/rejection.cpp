@@ -90,8 +90,8 @@ Figure rejection_figure(const Example& example) {
     const double highest_shape = (1 + std::abs(leaf.slope_x)) * (1 + std::abs(leaf.slope_y));
     Vec2<float> p;
     do {  // in proportion to the bound across the leaf
-      p = {lerp(to_unit_float(random()), leaf.cell.x0, leaf.cell.x1),
-           lerp(to_unit_float(random()), leaf.cell.y0, leaf.cell.y1)};
+      p = {linear_mix(to_unit_float(random()), leaf.cell.x0, leaf.cell.x1),
+           linear_mix(to_unit_float(random()), leaf.cell.y0, leaf.cell.y1)};
     } while (to_unit_double(random()) * leaf.majorant * highest_shape >= leaf.bound(p));
     const DomainPoint point = lift(domain, example.wo, p);
     const double side = domain.half && (random() & 1U) ? -1 : 1;

@@ -79,7 +79,7 @@ class AnyBrdf {
       if constexpr (std::is_same_v<ValueOf<F>, Spectrum>) {
         if (value.channels() != this->traits.channels) detail::throw_channels(value.channels(), this->traits);
       }
-      for (int c = 0; c < this->traits.channels; ++c) out[c] = channel(value, c);
+      for (int c = 0; c < this->traits.channels; ++c) out[c] = channel_value(value, c);
     }
     void eval(std::span<const Direction> wo, std::span<const Direction> wi,
               std::span<float> out) const override {

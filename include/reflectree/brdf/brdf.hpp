@@ -84,12 +84,12 @@ struct SharpLobe {
 struct BrdfTraits {
   std::string name = "lambda";  // canonical material text where there is one
   int channels = 3;
-  bool isotropic = true;             // false: known to depend on more than phi_o - phi_i
-  bool isotropic_by_formula = false; // may be evaluated with both directions turned about the normal
-  bool concurrent = true;            // false: called from one thread (a Python callback)
-  std::vector<float> theta_o_knots;  // radians: elevations where f has kinks in theta_o
-  std::vector<float> theta_d_knots;  // radians: difference angles where f has kinks; theta_o meets them at a
-                                     // mirror lobe, where the albedo inherits them
+  bool isotropic = true;              // false: known to depend on more than phi_o - phi_i
+  bool isotropic_by_formula = false;  // may be evaluated with both directions turned about the normal
+  bool concurrent = true;             // false: called from one thread (a Python callback)
+  std::vector<float> theta_o_knots;   // radians: elevations where f has kinks in theta_o
+  std::vector<float> theta_d_knots;   // radians: difference angles where f has kinks; theta_o meets them at a
+                                      // mirror lobe, where the albedo inherits them
   // A factor of f that depends on theta_o (radians) alone, > 0; empty: none known. Albedo tables interpolate
   // what is left of the albedo without it, so that its kinks cost no integral.
   std::function<double(double)> theta_o_factor;

@@ -21,7 +21,7 @@ const char* name_of(ModelClass model_class);
 // A parameter of model M: a member, float or Rgb, with its range (per channel, borders included).
 // The default is the member's initialiser. A pair NAME_x, NAME_y can be given together as NAME.
 template <class M>
-struct Parameter {
+struct ModelParameter {
   std::string_view name;
   std::variant<float M::*, Rgb M::*> member;
   float lo = 0, hi = 1;
@@ -42,11 +42,11 @@ struct Parameter {
 };
 
 template <class M>
-struct Description {
+struct ModelDescription {
   std::string_view name;  // as written in material text
   ModelClass model_class;
   std::string_view summary, source;
-  std::vector<Parameter<M>> parameters;
+  std::vector<ModelParameter<M>> parameters;
 };
 
 // For models whose parts share the energy; a rounding above 1 is let pass.

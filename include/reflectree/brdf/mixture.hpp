@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighted sums of BRDFs, known at compile time (Sum) or at run time (mixture).
+// Weighted sums of BRDFs, known at compile time (BrdfSum) or at run time (mixture).
 #pragma once
 
 #include "reflectree/brdf/any_brdf.hpp"
@@ -8,7 +8,7 @@ namespace reflectree {
 
 // weight_a a + weight_b b for two RGB models that take the shading geometry; nests.
 template <class A, class B>
-struct Sum {
+struct BrdfSum {
   float weight_a = 1;
   A a;
   float weight_b = 1;
@@ -36,7 +36,7 @@ AnyBrdf mixture(std::vector<MixtureTerm> terms, std::string name = "");
 BrdfTraits combined(const BrdfTraits& a, const BrdfTraits& b);
 
 template <class A, class B>
-BrdfTraits Sum<A, B>::traits() const {
+BrdfTraits BrdfSum<A, B>::traits() const {
   return combined(traits_of(a), traits_of(b));
 }
 

@@ -11,7 +11,7 @@
 
 namespace reflectree {
 
-// A Parameter whose model is erased. Values are Rgb; a float parameter (channels = 1) uses r alone.
+// A ModelParameter whose model is erased. Values are Rgb; a float parameter (channels = 1) uses r alone.
 struct ParameterInfo {
   std::string_view name;
   int channels = 1;  // 1 or 3

@@ -70,8 +70,8 @@ requires(std::is_arithmetic_v<A> && !std::same_as<A, float>) float as_value(A v)
   return static_cast<float>(v);
 }
 template <class A, std::size_t n>
-requires(std::is_arithmetic_v<A>&& n >= 1 && n <= std::size_t(max_channels)) auto as_value(
-    const std::array<A, n>& v) {
+requires(std::is_arithmetic_v<A>&& n >= 1 &&
+         n <= std::size_t(max_channels)) auto as_value(const std::array<A, n>& v) {
   if constexpr (n == 3) {
     return Rgb{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   } else {
@@ -89,13 +89,13 @@ inline int channels_of(float) { return 1; }
 inline int channels_of(const Rgb&) { return 3; }
 inline int channels_of(const Spectrum& v) { return v.channels(); }
 
-inline float channel(float v, int) { return v; }
-inline float channel(const Rgb& v, int i) { return i == 0 ? v.r : i == 1 ? v.g : v.b; }
-inline float channel(const Spectrum& v, int i) { return v[i]; }
+inline float channel_value(float v, int) { return v; }
+inline float channel_value(const Rgb& v, int i) { return i == 0 ? v.r : i == 1 ? v.g : v.b; }
+inline float channel_value(const Spectrum& v, int i) { return v[i]; }
 
-inline float scaled(float v, float s) { return v * s; }
-inline Rgb scaled(const Rgb& v, float s) { return s * v; }
-inline Spectrum scaled(Spectrum v, float s) {
+inline float scaled_value(float v, float s) { return v * s; }
+inline Rgb scaled_value(const Rgb& v, float s) { return s * v; }
+inline Spectrum scaled_value(Spectrum v, float s) {
   for (int i = 0; i < v.channels(); ++i) v[i] *= s;
   return v;
 }

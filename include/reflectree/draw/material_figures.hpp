@@ -69,7 +69,7 @@ Figure slabs_figure(const SamplerData& data);
 
 // The borders between leaves as curves on the disk of radius `radius` about (x, y); `background` chooses
 // light or dark strokes.
-std::string cell_borders(const std::vector<Split>& nodes, const Domain& domain, Direction wo, double x,
+std::string cell_borders(const std::vector<TreeSplit>& nodes, const Domain& domain, Direction wo, double x,
                          double y, double radius, const DiskImage& background, const Axis& range);
 
 }  // namespace reflectree::draw

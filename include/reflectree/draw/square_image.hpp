@@ -24,7 +24,7 @@ struct SquarePlace {
 std::string square_raster(const std::function<double(Vec2<float>)>& g, const Axis& range,
                           const SquarePlace& place, int size = 320);
 
-std::string cell_rectangle(const Cell& cell, const SquarePlace& place, std::string_view css_class);
+std::string cell_rectangle(const SquareCell& cell, const SquarePlace& place, std::string_view css_class);
 
 // What the edges are: the azimuth below, pole and rim on the left.
 std::string square_axes(const SquarePlace& place);

@@ -14,9 +14,9 @@
 
 namespace reflectree {
 
-struct Rectangle {
+struct CubatureBox {
   double x0 = 0, x1 = 1, y0 = 0, y1 = 1;
-  friend bool operator==(const Rectangle&, const Rectangle&) = default;
+  friend bool operator==(const CubatureBox&, const CubatureBox&) = default;
 };
 
 // out[i] = integrand at points[i]; called from the calling thread.
@@ -38,14 +38,14 @@ struct CubatureResult {
   std::size_t evaluations = 0;
   bool converged = false;
 };
-CubatureResult cubature(const Integrand& f, const Rectangle& domain, const CubatureOptions& options = {});
+CubatureResult cubature(const Integrand& f, const CubatureBox& domain, const CubatureOptions& options = {});
 
 // The same, with the regions it ended with: they tile the domain, `value` sums to the integral.
 struct CubatureRegion {
-  Rectangle box;
+  CubatureBox box;
   double value = 0, error = 0;
 };
-CubatureResult cubature(const Integrand& f, const Rectangle& domain, const CubatureOptions& options,
+CubatureResult cubature(const Integrand& f, const CubatureBox& domain, const CubatureOptions& options,
                         std::vector<CubatureRegion>& regions);
 
 }  // namespace reflectree

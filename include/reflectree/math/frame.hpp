@@ -9,13 +9,13 @@ namespace reflectree {
 
 // s x t = n; all of unit length.
 template <class T>
-struct Frame {
+struct LocalFrame {
   Vec3<T> s, t, n;
 };
 
 // `n` is a unit vector; n = +z gives the axes themselves.
 template <class T>
-Frame<T> frame_from_normal(Vec3<T> n) {
+LocalFrame<T> frame_from_normal(Vec3<T> n) {
   const T sign = std::copysign(T(1), n.z);
   const T a = T(-1) / (sign + n.z);
   const T b = n.x * n.y * a;
@@ -23,11 +23,11 @@ Frame<T> frame_from_normal(Vec3<T> n) {
 }
 
 template <class T>
-constexpr Vec3<T> to_local(const Frame<T>& frame, Vec3<T> w) {
+constexpr Vec3<T> to_local(const LocalFrame<T>& frame, Vec3<T> w) {
   return {dot(w, frame.s), dot(w, frame.t), dot(w, frame.n)};
 }
 template <class T>
-constexpr Vec3<T> to_world(const Frame<T>& frame, Vec3<T> w) {
+constexpr Vec3<T> to_world(const LocalFrame<T>& frame, Vec3<T> w) {
   return w.x * frame.s + w.y * frame.t + w.z * frame.n;
 }
 

@@ -37,7 +37,7 @@ constexpr T sqr(T x) {
   return x * x;
 }
 template <class T>
-constexpr T lerp(T t, T a, T b) {
+constexpr T linear_mix(T t, T a, T b) {
   return a + t * (b - a);
 }
 

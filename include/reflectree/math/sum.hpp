@@ -7,9 +7,9 @@
 
 namespace reflectree {
 
-class Sum {
+class CompensatedSum {
  public:
-  constexpr Sum& operator+=(double x) {
+  constexpr CompensatedSum& operator+=(double x) {
     const double t = total_ + x;
     // The low digits lost in t belong to the smaller of the two terms.
     const double a = total_ < 0 ? -total_ : total_, b = x < 0 ? -x : x;
@@ -17,7 +17,7 @@ class Sum {
     total_ = t;
     return *this;
   }
-  constexpr Sum& operator-=(double x) { return *this += -x; }
+  constexpr CompensatedSum& operator-=(double x) { return *this += -x; }
   constexpr double value() const { return total_ + lost_; }
 
  private:

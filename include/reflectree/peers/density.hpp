@@ -41,7 +41,7 @@ class WeightedSampler {
     const auto drawn = draw(wo, u);
     if (!drawn || !(drawn->wi.z > 0) || !(drawn->pdf > 0)) return std::nullopt;
     return DirectionSample<Value>{drawn->wi, drawn->pdf,
-                                  scaled(eval(f_, wo, drawn->wi), drawn->wi.z / drawn->pdf)};
+                                  scaled_value(eval(f_, wo, drawn->wi), drawn->wi.z / drawn->pdf)};
   }
   float pdf(Direction wo, Direction wi) const { return wo.z > 0 && wi.z > 0 ? density_.pdf(wo, wi) : 0.f; }
 

@@ -19,7 +19,7 @@ enum class LobeKind : std::uint8_t {
   half_power,  // half vectors of Ashikhmin and Shirley 2000, exponents a, b
 };
 
-struct Lobe {
+struct ProposalLobe {
   LobeKind kind = LobeKind::cosine;
   float a = 1, b = 1;
   Vec3<float> axis{-1, -1, 1};
@@ -30,7 +30,7 @@ struct Lobe {
 
 struct WeightedLobe {
   float weight = 1;
-  Lobe lobe;
+  ProposalLobe lobe;
 };
 
 // rows[i] serves the elevations of wo nearest to (i + 1/2) / rows.size() of a right angle. Weights of a row

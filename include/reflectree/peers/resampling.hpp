@@ -35,7 +35,7 @@ struct ResamplingSampler {
     }
     if (!(kept_t > 0)) return std::nullopt;
     const double scale = double(kept.z) / kept_t * sum / count;
-    return DirectionSample<Value>{kept, 0, scaled(kept_f, float(scale))};
+    return DirectionSample<Value>{kept, 0, scaled_value(kept_f, float(scale))};
   }
 };
 

@@ -21,7 +21,7 @@ class Environment {
  public:
   explicit Environment(Rgb radiance) : constant_(radiance) {}
   // `frame`: where the picture's x, y and z axes point. Throws Error for a picture without light.
-  Environment(const Image& picture, Frame<float> frame, float scale, const std::string& where);
+  Environment(const Image& picture, LocalFrame<float> frame, float scale, const std::string& where);
 
   // Directions point away from the scene; `pdf` is the density of `sample`.
   struct Light {
@@ -43,7 +43,7 @@ class Environment {
  private:
   // Cell (x, y) lies between the texels (x, y) and (x + 1, y + 1).
   struct Sky {
-    Frame<float> frame;
+    LocalFrame<float> frame;
     int width, rows;             // of cells
     std::vector<Rgb> texels;     // [rows + 1][width + 1], scaled; the last column is the first again
     std::vector<float> columns;  // [y][x]: cumulative mass in a row of cells

@@ -41,7 +41,7 @@ struct Sphere {
   Vec3<double> centre;
   double radius = 1;
   bool inwards = false;  // its normals
-  Frame<float> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  LocalFrame<float> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::uint32_t surface = 0;
 };
 // Of a plane, centre + x s + y t: a rectangle where |x|, |y| <= 1, a disk where x^2 + y^2 <= 1 (or what a

@@ -32,7 +32,7 @@ inline float heuristic(Technique technique, float own, float other) {
 struct PathVertex {
   PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction);
   Interaction on;
-  Frame<float> frame;
+  LocalFrame<float> frame;
   Direction wo;
   const Surface* surface;
   const Scattering& scattering() const { return *surface->scattering; }

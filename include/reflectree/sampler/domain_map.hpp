@@ -81,12 +81,13 @@ REFLECTREE_INLINE LoweredHalfVector lower_half_vector(Direction wo, Direction wi
   return {wh, star.p * tau / (star.p - (star.c - star.p) * tau)};  // tau = y d, solved for y
 }
 
-// Polar coordinates (rho, phi) of wi about the mirror direction m = (-s, 0, z) of an axis (s, 0, z), which is wo
-// or the normal; phi = 0 leans
-// towards the horizon, along u = (-z, 0, -s). With t = tan(rho / 2) wi stays above the surface up to the rim
+// Polar coordinates (rho, phi) of wi about the mirror direction m = (-s, 0, z) of an axis (s, 0, z), which is
+// wo or the normal; phi = 0 leans towards the horizon, along u = (-z, 0, -s). With t = tan(rho / 2) wi stays
+// above the surface up to the rim
 //   R = z / (s cos phi + sqrt(s^2 cos^2 phi + z^2)) = p / c,
 // and the radius runs over it as in the star: t = y d, d = p / (p + (c - p) y), t' = d^2. There
-//   wi.z = z d (1 - y) (R t + 1) / (1 + t^2) without cancellation, d(solid angle) = 4 t / (1 + t^2)^2 dt dphi.
+//   wi.z = z d (1 - y) (R t + 1) / (1 + t^2) without cancellation, d(solid angle) = 4 t / (1 + t^2)^2 dt
+//   dphi.
 template <class T>
 struct MirrorRim {
   T p, c;
@@ -162,8 +163,7 @@ REFLECTREE_INLINE DomainPointT<T> lift_point(const Domain& domain, Vec3<T> wo, V
       const T v = max(T(1) - y, T(1e-7f));
       const T z = max(pow(v, T(power)), T(min_cos_theta_i));
       const T r = sqrt(T(1) - z * z);
-      return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}),
-              T(2 * pi * power) * z * z / v};
+      return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}), T(2 * pi * power) * z * z / v};
     }
   }
 }

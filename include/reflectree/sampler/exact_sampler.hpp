@@ -81,7 +81,7 @@ class ExactSampler {
     const float density = min(ratio, c.majorant) / slab.volume;  // per share of the square
     return DirectionSample<Value>{from_incidence(in, c.point.geometry.wi),
                                   density * c.point.geometry.cos_theta_i / c.point.projected_area,
-                                  scaled(c.value, c.point.projected_area / density), sample_reflection};
+                                  scaled_value(c.value, c.point.projected_area / density), sample_reflection};
   }
 
   // Per solid angle, sr^-1: t cos_i / a(wo).
@@ -145,7 +145,7 @@ class ExactSampler {
   REFLECTREE_INLINE static DirectionSample<Value> finish(const Candidate& c, const Incidence& in) {
     const float t = c.target / c.point.projected_area;
     return {from_incidence(in, c.point.geometry.wi), t * c.point.geometry.cos_theta_i / in.albedo,
-            scaled(c.value, in.albedo / t), sample_reflection};
+            scaled_value(c.value, in.albedo / t), sample_reflection};
   }
 
   F f_;

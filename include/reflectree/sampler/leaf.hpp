@@ -50,7 +50,7 @@ REFLECTREE_INLINE ChosenLeaf choose_leaf(const PackedSlab& slab, const PackedLea
 template <class T>
 REFLECTREE_INLINE T sample_linear(T slope, T u) {
   const T a = T(1) - slope, b = T(1) + slope;
-  return min(T(2) * u / (a + sqrt(lerp(u, a * a, b * b))), T(1));
+  return min(T(2) * u / (a + sqrt(linear_mix(u, a * a, b * b))), T(1));
 }
 REFLECTREE_INLINE float linear_cdf(float slope, float t) { return t * (1 - slope * (1 - t)); }
 

@@ -78,8 +78,8 @@ class OneShotSampler {
     return filled;
   }
 
-  // By monotone descent from two uniforms in [0, 1): stratified and QMC points stay stratified. Uniforms outside
-  // of [0, 1] are no sample.
+  // By monotone descent from two uniforms in [0, 1): stratified and QMC points stay stratified. Uniforms
+  // outside of [0, 1] are no sample.
   std::optional<DirectionSample<Value>> sample(Direction wo, double u1, double u2) const {
     Incidence in;
     if (!detail::are_uniforms(u1, u2) || !find_incidence(*packed_, wo, in)) return std::nullopt;
@@ -162,7 +162,7 @@ class OneShotSampler {
   REFLECTREE_INLINE DirectionSample<Value> finish(const Domain& domain, const Incidence& in,
                                                   const detail::PointInLeaf& at, bool mirrored) const {
     const Proposal p = proposal(domain, in, at, mirrored);
-    return {p.wi, p.pdf, scaled(eval(f_, p.geometry), p.scale), sample_reflection};
+    return {p.wi, p.pdf, scaled_value(eval(f_, p.geometry), p.scale), sample_reflection};
   }
 
   REFLECTREE_INLINE Proposal proposal(const Domain& domain, const Incidence& in,

@@ -10,15 +10,15 @@
 
 namespace reflectree {
 
-struct Coordinate {
+struct KnownCoordinate {
   std::string name;  // "theta_o"
   float lo = 0, hi = 1;
-  friend bool operator==(const Coordinate&, const Coordinate&) = default;
+  friend bool operator==(const KnownCoordinate&, const KnownCoordinate&) = default;
 };
 
 struct Partition {
   static constexpr std::uint8_t leaf = 0xff;
-  std::vector<Coordinate> coordinates;
+  std::vector<KnownCoordinate> coordinates;
   std::vector<std::uint8_t> axis;  // preorder: coordinate that a node splits, or `leaf`
   std::vector<float> split;        // of each inner node, in preorder; lower half first
   friend bool operator==(const Partition&, const Partition&) = default;

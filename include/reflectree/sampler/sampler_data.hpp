@@ -19,29 +19,29 @@ namespace reflectree {
 enum class BoundStatus : std::uint8_t { certified, estimated };
 
 // A node of a tree over the square, in preorder; the lower half comes first.
-enum class Split : std::uint8_t { leaf = 0, x = 1, y = 2 };
+enum class TreeSplit : std::uint8_t { leaf = 0, x = 1, y = 2 };
 
 // A tree of one slab. Leaf i is chosen with probability mass_i / sum(mass); across it, for s, t in [-1, 1],
 // runs the product-linear shape q = (1 + gx s)(1 + gy t), gx = slope_x / 128 in (-1, 1), whose mean is 1.
-struct Tree {
-  std::vector<Split> nodes;
+struct CanonicalTree {
+  std::vector<TreeSplit> nodes;
   std::vector<std::uint32_t> mass;  // of each leaf, in preorder
   std::vector<std::int8_t> slope_x, slope_y;
-  friend bool operator==(const Tree&, const Tree&) = default;
+  friend bool operator==(const CanonicalTree&, const CanonicalTree&) = default;
 };
 
 // Exact mode: leaf i bounds the normalised target, T / albedo <= majorant_i q, where
 // majorant_i = volume * (mass_i / sum(mass)) / area_i and area is the leaf's share of the square. The bound
 // is derived from the integer mass, so that rounding costs trials and never exactness. volume = expected
 // trials where the albedo is exact.
-struct MajorantTree : Tree {
+struct MajorantTree : CanonicalTree {
   float volume = 0;
   BoundStatus status = BoundStatus::estimated;
   friend bool operator==(const MajorantTree&, const MajorantTree&) = default;
 };
 
 // One-shot mode: the density per share of the square is (mass_i / sum(mass)) / area_i q.
-struct DensityTree : Tree {
+struct DensityTree : CanonicalTree {
   friend bool operator==(const DensityTree&, const DensityTree&) = default;
 };
 
@@ -93,10 +93,10 @@ struct SamplerData {
 void validate(const SamplerData& data);
 
 // A leaf's box in square coordinates.
-struct Cell {
+struct SquareCell {
   float x0, x1, y0, y1;
 };
 // The cells of all leaves of a tree in preorder; the root is the domain's square.
-std::vector<Cell> leaf_cells(const std::vector<Split>& nodes, const Domain& domain);
+std::vector<SquareCell> leaf_cells(const std::vector<TreeSplit>& nodes, const Domain& domain);
 
 }  // namespace reflectree

@@ -35,7 +35,7 @@ REFLECTREE_INLINE void store_sample(const TrialBlock& b, const Values& values, s
   using Field = TrialBlock::Field;
   out = {{b.at[Field::wi_x][k], b.at[Field::wi_y][k], b.at[Field::wi_z][k]},
          b.at[Field::pdf][k],
-         scaled(values.value(k), b.at[Field::scale][k]),
+         scaled_value(values.value(k), b.at[Field::scale][k]),
          sample_reflection};
 }
 

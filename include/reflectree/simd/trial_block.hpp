@@ -27,9 +27,9 @@ struct alignas(64) TrialBlock {
     slope_y,
     height,  // LeafCell
     across_x,
-    across_y,       // uniforms or places across the leaf
-    turn,           // sign bit: of the coin of half domains
-    uniform,        // of the acceptance
+    across_y,  // uniforms or places across the leaf
+    turn,      // sign bit: of the coin of half domains
+    uniform,   // of the acceptance
     known_x,
     known_y,
     known_z,        // wo as the caller gave it, where keep_known

@@ -20,7 +20,7 @@ struct Bins {
     int lower = -1, upper = -1;  // nodes; negative: bin number -1 - value
   };
   std::vector<Node> nodes;  // the root first; empty: a single bin
-  std::vector<Rectangle> boxes;
+  std::vector<CubatureBox> boxes;
   std::vector<double> mass;  // integral of t cos_i over each bin
   double total = 0;          // their sum
   double worst_error = 0;    // largest relative error bound among them

@@ -17,7 +17,7 @@ class HemisphereChart {
   // centre: a unit vector above the surface.
   explicit HemisphereChart(Vec3<double> centre);
 
-  static constexpr Rectangle domain{0, 4, 0, 2};
+  static constexpr CubatureBox domain{0, 4, 0, 2};
 
   struct Point {
     Vec3<double> w;

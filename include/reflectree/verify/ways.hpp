@@ -39,7 +39,7 @@ class LaneWatcher {
 template <class Value>
 void store(const DirectionSample<Value>& s, std::size_t channels, DrawnAt& out, float* weights) {
   out.wi = s.wi, out.pdf = s.pdf, out.drawn = s.flags != 0;
-  for (std::size_t c = 0; c < channels; ++c) weights[c] = out.drawn ? channel(s.weight, int(c)) : 0.f;
+  for (std::size_t c = 0; c < channels; ++c) weights[c] = out.drawn ? channel_value(s.weight, int(c)) : 0.f;
 }
 
 // one(u) for every place of out.
@@ -221,7 +221,8 @@ Suspect suspect(const Sampler<F>& sampler, AnyBrdf f, const SamplerData* data = 
   };
   s.once = [&sampler, channels](Direction wo, Pcg32& u, std::span<float> weights) {
     const auto drawn = sampler.exact.sample_once(wo, u);
-    for (std::size_t c = 0; c < channels; ++c) weights[c] = drawn ? channel(drawn->weight, int(c)) : 0.f;
+    for (std::size_t c = 0; c < channels; ++c)
+      weights[c] = drawn ? channel_value(drawn->weight, int(c)) : 0.f;
   };
   return s;
 }

@@ -34,7 +34,7 @@ struct AshikhminShirley {
   }
 
   BrdfTraits traits() const { return model_traits(*this, n_x == n_y); }
-  static Description<AshikhminShirley> describe() {
+  static ModelDescription<AshikhminShirley> describe() {
     return {"ashikhmin_shirley",
             ModelClass::physical,
             "Phong-like lobe of the half vector with Fresnel term over a coupled diffuse part",

@@ -39,7 +39,7 @@ struct CookTorrance {
 
   BrdfTraits traits() const { return model_traits(*this); }
   const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
-  static Description<CookTorrance> describe() {
+  static ModelDescription<CookTorrance> describe() {
     return {
         "cook_torrance",
         ModelClass::physical,

@@ -37,7 +37,7 @@ struct Ggx {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static Description<Ggx> describe() {
+  static ModelDescription<Ggx> describe() {
     return {"ggx",
             ModelClass::physical,
             "metal of microfacets: Trowbridge-Reitz, height-correlated Smith, Schlick's Fresnel term",

@@ -29,13 +29,14 @@ struct Lafortune {
   BrdfTraits traits() const { return model_traits(*this, cx == cy); }
   const char* fault() const {
     for (int c = 0; c < 3; ++c) {
-      const float longest = max(max(abs(channel(cx, c)), abs(channel(cy, c))), abs(channel(cz, c)));
-      if (channel(n, c) * log(longest) > 14.f)
+      const float longest =
+          max(max(abs(channel_value(cx, c)), abs(channel_value(cy, c))), abs(channel_value(cz, c)));
+      if (channel_value(n, c) * log(longest) > 14.f)
         return "the largest of |cx|, |cy|, |cz|, to the power n, must not exceed 1e6";
     }
     return nullptr;
   }
-  static Description<Lafortune> describe() {
+  static ModelDescription<Lafortune> describe() {
     return {"lafortune",
             ModelClass::approximate,
             "generalised cosine lobe, off-specular or retro-reflective",

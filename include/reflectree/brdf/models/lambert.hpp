@@ -15,7 +15,7 @@ struct Lambert {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static Description<Lambert> describe() {
+  static ModelDescription<Lambert> describe() {
     return {"lambert",
             ModelClass::physical,
             "ideal diffuse reflection",

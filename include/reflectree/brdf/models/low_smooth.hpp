@@ -23,7 +23,7 @@ struct LowSmooth {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static Description<LowSmooth> describe() {
+  static ModelDescription<LowSmooth> describe() {
     return {"low_smooth",
             ModelClass::experimental,
             "ABC lobe on the disk; c = 1, f0 = 1 has a closed-form albedo",

@@ -25,7 +25,7 @@ struct OrenNayar {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static Description<OrenNayar> describe() {
+  static ModelDescription<OrenNayar> describe() {
     return {"oren_nayar",
             ModelClass::approximate,
             "rough diffuse surface, qualitative model",

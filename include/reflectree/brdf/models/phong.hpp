@@ -21,7 +21,7 @@ struct Phong {
 
   BrdfTraits traits() const { return model_traits(*this); }
   const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
-  static Description<Phong> describe() {
+  static ModelDescription<Phong> describe() {
     return {"phong",
             ModelClass::physical,
             "diffuse part and cosine-power lobe about the mirror direction",

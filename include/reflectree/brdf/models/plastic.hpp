@@ -26,7 +26,7 @@ struct Plastic {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static Description<Plastic> describe() {
+  static ModelDescription<Plastic> describe() {
     return {"plastic",
             ModelClass::physical,
             "smooth diffuse base under a rough dielectric coat (GGX)",

@@ -18,7 +18,7 @@ struct RetroReflector {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static Description<RetroReflector> describe() {
+  static ModelDescription<RetroReflector> describe() {
     return {"retro_reflector",
             ModelClass::physical,
             "GGX lobe about the direction of the viewer",

@@ -25,7 +25,7 @@ struct Ward {
 
   BrdfTraits traits() const { return model_traits(*this, alpha_x == alpha_y); }
   const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
-  static Description<Ward> describe() {
+  static ModelDescription<Ward> describe() {
     return {"ward",
             ModelClass::physical,
             "diffuse part and Gaussian lobe with bounded albedo",
