@@ -29,8 +29,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COPIED = ["CMakeLists.txt", "apps", "bench", "cmake", "examples", "include", "src", "tests", "tools", "LICENSE", "docs"]
 # In the order in which they are asked: the quickest to build first.
-TEST_PROGRAMS = ["test_sampler_data", "test_verify_ways", "test_sampler_sampling", "test_simd_batch", "test_sampler_build",
-                 "test_sampler_faults"]
+TEST_PROGRAMS = ["test_sampler_data", "test_sampler_build", "test_sampler_sampling", "test_sampler_faults",
+                 "test_simd_batch", "test_verify_ways"]
 VERIFY_SECONDS, TEST_SECONDS = 200, 600
 
 
