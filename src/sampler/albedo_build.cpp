@@ -139,7 +139,7 @@ class TableBuilder {
   // Integrals at random places inside the panels, by another cubature: panels that miss them are refined, a
   // few times; what is missed in the end, the table states.
   void check(std::uint64_t seed) {
-    constexpr int rounds = 4;
+    constexpr int rounds = 8;
     Pcg32 u(seed, 19);
     std::vector<Panel> fresh = closed_;
     for (int round = 0; !fresh.empty(); ++round) {
@@ -148,7 +148,7 @@ class TableBuilder {
       std::vector<Panel> checked;
       for (const Panel& panel : fresh) {
         if (panel.jump || panel.hi - panel.lo < 1e-5) continue;
-        for (int k = 0; k < (panel.hi > 1.48 ? 3 : 1); ++k) {
+        for (int k = 0; k < (round > 0 || panel.hi > 1.48 ? 3 : 1); ++k) {
           cosines.push_back(cosine_of(linear_mix(to_unit_double(u()), panel.lo, panel.hi)));
           checked.push_back(panel);
         }
