@@ -30,8 +30,7 @@ void Progress::show(float fraction) {
   const auto pause = std::chrono::milliseconds(!terminal_ ? 1000 : drawn_ ? 100 : 500);
   if (now - last_ < pause) return;
   last_ = now;
-  // What turns out to need another round goes no further back.
-  const float share = highest_ = std::max(highest_, std::clamp(fraction, 0.f, 1.f));
+  const float share = std::clamp(fraction, 0.f, 1.f);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string left =
       share >= .1f ? fmt::format(", {:.0f} s left", elapsed * (1 / double(share) - 1)) : std::string();

@@ -25,7 +25,6 @@ class Progress {
   std::mutex mutex_;
   std::string label_, stage_;
   bool terminal_, drawn_ = false;
-  float highest_ = 0;
   Clock::time_point start_, last_;
 };
 

@@ -98,8 +98,8 @@ void add_build_choices(CLI::App& command, BuildChoices& choices) {
   option("--target", choices.target, "WORD",
          "What is sampled, of the channels: norm, luminance, maximum, channel:K");
   option("--domain", choices.domain, "WORD",
-         "Map of the square: auto, projected_disk, equal_area, half_vector, back_vector, mirror_vector, "
-         "normal_vector, stretched:A");
+         "Map of the square: auto, projected_disk, equal_area, half_vector,\n"
+         "back_vector, mirror_vector, normal_vector, stretched:A");
 }
 
 BuildOptions build_options(const Context& context, const BuildChoices& choices) {

@@ -2,6 +2,7 @@
 #include "check_options.hpp"
 
 #include <cstdio>
+#include <memory>
 
 #include "reflectree/error.hpp"
 
@@ -53,6 +54,11 @@ Host completed(Host host) {
   const Host plain;
   if (!host.parallel_for) host.parallel_for = plain.parallel_for;
   if (!host.progress) host.progress = plain.progress;
+  // What turns out to need another round goes no further back.
+  host.progress = [show = host.progress, highest = std::make_shared<float>(0.f)](float fraction) {
+    if (fraction > *highest) *highest = fraction;
+    show(*highest);
+  };
   if (!host.stage) host.stage = plain.stage;
   if (!host.cancelled) host.cancelled = plain.cancelled;
   return host;

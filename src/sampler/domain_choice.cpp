@@ -92,7 +92,7 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
       const float narrower = max(1.f, float(theta_cost / ideal) / (0.4f * budget));
       price += leaves * missed * missed * narrower;
     }
-    const bool blind = mass < 1e-3 * best_mass, sees_more = best_mass < 1e-3 * mass;
+    const bool blind = mass == 0 && best_mass > 0, sees_more = mass > 0 && best_mass == 0;
     if (sees_more || (price < least && !blind))
       least = price, best = domain, best_mass = mass, best_slabs = std::move(slabs);
     // A domain that needs in one slab twice as many leaves as the best in all cannot win.

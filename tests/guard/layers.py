@@ -29,7 +29,7 @@ MAY_SEE = {
 }
 STANDARD = frozenset(
     """algorithm array atomic bit bitset cassert cctype cerrno cfloat charconv chrono cinttypes climits
-    clocale cmath compare complex concepts condition_variable csignal cstddef cstdint cstdio cstdlib
+    clocale cmath cstdarg compare complex concepts condition_variable csignal cstddef cstdint cstdio cstdlib
     cstring ctime deque exception filesystem forward_list fstream functional future initializer_list
     iomanip ios iosfwd iostream istream iterator limits list locale map memory mutex new numbers
     numeric optional ostream queue random ratio set shared_mutex span sstream stack stdexcept

@@ -30,8 +30,8 @@ struct Bins {
 
 struct BinOptions {
   int count = 400;
-  std::optional<Vec3<double>> centre;  // of the chart; default: where a search finds t cos_i highest
   double tolerance = 3e-4;  // relative, of each mass; biases chi-square by less than samples * tolerance^2
+  std::optional<Vec3<double>> centre = {};  // of the chart; default: where a search finds t cos_i highest
 };
 
 // No bins at all where the albedo is zero.
