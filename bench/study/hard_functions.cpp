@@ -115,6 +115,16 @@ std::string cell(const std::string& text) {
   return safe;
 }
 
+constexpr const char* preface = R"(# Functions that tempt a builder
+
+Made by `build/bin/study_hard_functions > docs/results/hard-functions.md`, on two cores. Each function is built with the
+default options and judged at 8, 41, 54 and 77 degrees by chi-square, weights and mean weights against cubature, which
+share no code with the builder; *least p* is the smallest of 16 (the level of one test is 1e-7). *Right, told*: right, and
+the build says which promise it does not keep. *Refused*: no sampler, and a sentence that says why. *Seconds* of the wall
+clock; *of a core*: of the processor, while building. *Variance*: relative, of one-shot weights, at the worst of the four.
+
+)";
+
 int run(int argc, char** argv) {
   CLI::App app{"Functions that tempt a builder to be wrong: built, judged, and printed as a table"};
   std::string only;
@@ -129,6 +139,7 @@ int run(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     const Host host = host_with_threads(threads);
     bool wrong = false;
+    if (!list) std::printf("%s", preface);
     std::printf(
         "| function | what | verdict | seconds | of a core | domain | slabs | leaves | trials | variance | "
         "least p | words |\n");

@@ -207,6 +207,7 @@ void add_steps(std::vector<HardFunction>& list) {
   list.push_back(of("soft ring 42", "the same with a Gaussian profile", [](Direction o, Direction i) {
     return 0.01f + 2 * std::exp(-sqr((angle_to(i, mirror(o)) - 42 * degree) / (0.5f * degree)));
   }));
+  for (std::size_t k = list.size() - 3; k < list.size(); ++k) list[k].may_be_refused = true;
   list.push_back(of("step in theta_i", "1 where cos_i > 0.7071, else 0",
                     [](Direction, Direction i) { return i.z > 0.7071f ? 1.f : 0.f; }));
   list.push_back(of("step in theta_o", "1 up to 30 degrees, 0.3 beyond",

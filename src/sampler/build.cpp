@@ -149,7 +149,7 @@ std::vector<Slab> build_exact(std::vector<Slab> slabs, const Survey& survey, con
     maximise(slabs, first_new, survey);
     // However many leaves there are, a pass has an end.
     const auto leaves = float(leaf_count(slabs));
-    const float per_leaf = min(clamp(1.5e6f / leaves, 400.f, 20000.f), max(2e7f / leaves, 40.f));
+    const float per_leaf = min(clamp(1.5e6f / leaves, 400.f, 20000.f), max(6e7f / leaves, 40.f));
     probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey,
           overshoot);
     report.overshoot_mass = *std::max_element(overshoot.begin(), overshoot.end());
@@ -301,7 +301,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     const Domain domain = options.domain ? *options.domain : choose_domain(f, options, seen, ridges, host);
     const Field field{f, options.target, domain, domain.half && !seen.mirror_symmetric, ridges};
     Attempt attempt = attempt_exact(field, seen, options, effort, host, data.report);
-    if (n < max_attempts && evaluations < options.max_evaluations &&
+    if (n < max_attempts && evaluations < options.max_evaluations && !effort.spent() &&
         disagrees(attempt.seen, attempt.albedo)) {
       evaluations += effort.evaluations;
       if (add_ridges(ridges, field, attempt.seen)) {
@@ -310,7 +310,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
       }
     }
     refuse_albedo_out_of_range(attempt.albedo, data.target, f.traits().name);
-    refuse_disagreement(attempt.seen, attempt.albedo, field);
+    refuse_disagreement(attempt.seen, attempt.albedo, field, effort.spent());
     const bool spent = effort.spent();
     effort.limit = options.max_evaluations;
     const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps};

@@ -78,9 +78,11 @@ bool disagrees(const CrossExamination& seen, const AlbedoTable& albedo) {
   return !seen.surprises.empty() || mean_disagrees(seen, albedo);
 }
 
-void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field) {
+void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field,
+                         bool spent) {
   const std::string& name = field.f.traits().name;
-  const char* mend = "tell of its sharp lobes by traits().sharp, or smooth it";
+  const char* mend = spent ? "the budget is used up: raise max_evaluations, or smooth the function"
+                           : "tell of its sharp lobes by traits().sharp, or smooth it";
   if (!seen.surprises.empty()) {
     const Surprise& s = seen.surprises.front();
     const std::string where = name + " at " + describe(wo_from_cosine(s.cos_theta_o), s.wi);

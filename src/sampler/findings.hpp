@@ -14,7 +14,8 @@ bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExami
 // Whether trees and albedo contradict what was seen of f.
 bool disagrees(const CrossExamination& seen, const AlbedoTable& albedo);
 // Throws Error where trees and albedo contradict what was seen of f: a sampler of them would be wrong.
-void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field);
+void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field,
+                         bool spent);
 // What was promised and is not kept.
 std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
                                   const AlbedoTable& albedo, const BuildOptions& options, bool spent);

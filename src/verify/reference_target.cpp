@@ -16,7 +16,7 @@ ShadingGeometry<float> narrow(const ShadingGeometry<double>& g) {
 }  // namespace
 
 double reference_target(const Target& target, std::span<const float> channels) {
-  const auto f = [&](std::size_t c) { return double(channels[c]); };
+  const auto f = [&](std::size_t c) { return double(target.scale) * double(channels[c]); };
   if (channels.size() == 1) return f(0);
   double squares = 0, sum = 0, largest = 0;
   for (std::size_t c = 0; c < channels.size(); ++c) {
