@@ -176,16 +176,21 @@ class TableBuilder {
         return;
       }
       // A half that the parabola finds smooth was so before it was halved: trust is what was wrong here.
+      // The integrals themselves may be what was wrong: near the rim all are taken again.
       std::vector<Panel> kept;
+      const bool first_time = !rim_;
       for (const Panel& p : closed_) {
         const bool again =
             std::any_of(missed.begin(), missed.end(), [&](const Panel& m) { return m.lo == p.lo; });
-        if (!again)
-          kept.push_back(p);
-        else
+        if (again) {
           halve(p, open_);
+        } else if (first_time && p.hi > 1.4 && !p.jump) {
+          open_.push_back(p);
+          missed.push_back(p);
+        } else {
+          kept.push_back(p);
+        }
       }
-      // The integrals themselves may be what was wrong.
       rim_ = true;
       for (const Panel& p : missed) {
         for (int i = 0; i < 5; ++i) nodes_.erase(node_of(p, i));
