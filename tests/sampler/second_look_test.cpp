@@ -89,7 +89,7 @@ TEST(Needles, AtTheNormal) {
   }
 }
 
-// The builder's own referees, on trees that were raised by hand: a lobe that no grid resolves is refused.
+// A lobe that no affordable grid resolves is refused, with a place where it was seen.
 TEST(Needles, AtRandomPlacesAreRefused) {
   // Three hundred needles that jump about with theta_o: no two viewers share one.
   const auto f = [](Direction wo, Direction wi) {
@@ -105,7 +105,9 @@ TEST(Needles, AtRandomPlacesAreRefused) {
     const SamplerData data = build(AnyBrdf(f), options);
     EXPECT_FALSE(data.report.notes.empty());
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("traits().sharp"), std::string::npos) << e.what();
+    const std::string words = e.what();
+    EXPECT_NE(words.find("wi = ("), std::string::npos) << words;
+    EXPECT_NE(words.find("max_evaluations"), std::string::npos) << words;
   }
 }
 
