@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "albedo_build.hpp"
+#include "albedo_integrals.hpp"
 #include "check_options.hpp"
 #include "examine.hpp"
 #include "field.hpp"
@@ -277,6 +278,23 @@ void refuse_albedo_out_of_range(const AlbedoTable& albedo, const Target& target,
   throw Error(what, name, "divide the function by a constant and multiply the weights by it");
 }
 
+// A domain that was asked for may turn the rim of an unbounded function into an atom of rounding, which its
+// own cubature takes for mass: the albedo must be that of the domain that the builder would have taken.
+void refuse_unfit_domain(const AlbedoTable& albedo, const Field& fit, const Host& host) {
+  constexpr double allowed = 0.02;
+  const std::vector<float> cosines{0.95f, 0.6f, 0.2f};
+  Effort uncounted;
+  const Integrals own = integrate(fit, cosines, {1e-3, 8, 4, true, 0.86f, 0.86f}, host, uncounted);
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    const double a = double(albedo_at(albedo, cosines[i])), b = own.values[i];
+    if (std::abs(a - b) <= (allowed + double(albedo.relative_error) + own.error) * std::max(a, b)) continue;
+    char what[128];
+    std::snprintf(what, sizeof what, "the domain that was asked for sees an albedo of %.4g, %s sees %.4g", a,
+                  name_of(fit.domain.kind), b);
+    throw Error(what, fit.f.traits().name, "leave the domain to the builder");
+  }
+}
+
 }  // namespace
 
 SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host& the_host) {
@@ -310,6 +328,11 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
       }
     }
     refuse_albedo_out_of_range(attempt.albedo, data.target, f.traits().name);
+    if (options.domain) {
+      const Domain own = choose_domain(f, options, seen, ridges, host);
+      const Field fit{f, options.target, own, own.half && !seen.mirror_symmetric, ridges};
+      refuse_unfit_domain(attempt.albedo, fit, host);
+    }
     refuse_disagreement(attempt.seen, attempt.albedo, field, effort.spent());
     const bool spent = effort.spent();
     effort.limit = options.max_evaluations;

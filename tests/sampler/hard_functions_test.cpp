@@ -211,6 +211,14 @@ struct Rpv {
   float operator()(Direction wo, Direction wi) const { return 0.05f * pow(wo.z * wi.z, -1.3f); }
 };
 
+// Asked for a domain in which the rim becomes an atom of rounding, the albedo was fifteen times too large.
+TEST(Rim, ADomainThatDoesNotFitIsRefused) {
+  BuildOptions options;
+  options.domain = Domain{DomainKind::projected_disk, true, 0};
+  EXPECT_THROW(build(AnyBrdf(Rpv{}), options), Error);
+  EXPECT_NO_THROW(build(AnyBrdf(Lopsided{0}), options));
+}
+
 TEST(Rim, UnboundedFunctionsAreSampledOrRefused) {
   const auto judged = [](const char* name, const AnyBrdf& f) {
     try {
