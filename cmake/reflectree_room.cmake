@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # A room is a static library (without SOURCES: headers alone) with a folder in include/ and one in src/; the arrows between rooms are
-# math <- brdf <- sampler <- everything else, kept by tests/guard/layers.py.
+# text, math <- brdf <- sampler <- formats <- everything else, kept by tests/guard/layers.py.
 #
 # reflectree_room(name SOURCES a.cpp ... USES reflectree::math ... PRIVATE PNG::PNG ... PACKAGES "embree 3" ...)
 # makes reflectree::name. A used target is called package::target; the installed package looks for exactly
@@ -15,6 +15,8 @@ function(reflectree_room name)
     set(public PUBLIC)
     add_library(${target} STATIC ${ROOM_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:reflectree_options> ${ROOM_PRIVATE})
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "folder/file.hpp" of the room itself
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # for plug-ins and Python
   else()
     set(public INTERFACE)
     add_library(${target} INTERFACE)

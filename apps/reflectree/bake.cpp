@@ -2,9 +2,9 @@
 // bake: any isotropic material as a MERL .binary file.
 #include "commands.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/merl.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/merl.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

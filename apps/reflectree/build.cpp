@@ -5,7 +5,7 @@
 #include "commands.hpp"
 #include "info.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

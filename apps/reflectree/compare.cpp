@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "measure.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
+#include "reflectree/formats/file.hpp"
 
 namespace reflectree::cli {
 

@@ -5,8 +5,8 @@
 
 #include "compare.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/image.hpp"
-#include "reflectree/io/material_file.hpp"
+#include "reflectree/picture/image.hpp"
+#include "reflectree/formats/material_file.hpp"
 
 namespace reflectree::cli {
 

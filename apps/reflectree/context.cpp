@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
 
 namespace reflectree::cli {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree::cli {
 

@@ -10,8 +10,8 @@
 #include "interrupt.hpp"
 #include "pictures.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 
 namespace reflectree::cli {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "measure.hpp"
-#include "reflectree/brdf/registry.hpp"
+#include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/draw/report.hpp"
 #include "reflectree/verify/chi_square.hpp"
 

@@ -8,7 +8,7 @@
 #include "measure.hpp"
 #include "pictures.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
+#include "reflectree/formats/file.hpp"
 
 namespace reflectree::cli {
 

@@ -5,11 +5,11 @@
 #include "commands.hpp"
 #include "eval_pairs.hpp"
 #include "interrupt.hpp"
-#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/npy.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/npy.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

@@ -11,10 +11,10 @@
 #include <iterator>
 #include <optional>
 
-#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/file_kind.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/file_kind.hpp"
 
 namespace reflectree::cli {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // image-compare: how far one picture is from another.
-#include "reflectree/render/image_compare.hpp"
+#include "reflectree/picture/image_compare.hpp"
 #include "commands.hpp"
-#include "reflectree/render/flip.hpp"
+#include "reflectree/picture/flip.hpp"
 
 namespace reflectree::cli {
 
@@ -11,8 +11,8 @@ namespace {
 struct Options {
   std::string a, b, map, flip;
   double scale = .02;
-  render::CompareOptions how;
-  render::FlipOptions eye;
+  ImageCompareOptions how;
+  FlipOptions eye;
 };
 
 // Channels of other names, such as stderr.R, stay; what is in sRGB becomes linear light.
@@ -23,12 +23,12 @@ Image linear(const std::string& path) {
 
 int run_compare(const Context& context, const Options& o) {
   const Image a = linear(o.a), b = linear(o.b);
-  const render::ImageDifference d = render::compare(a, b, o.how);
-  if (!o.map.empty()) write_png(o.map, render::difference_map(a, b, o.how.block, o.scale));
-  const Image seen = render::flip(b, a, o.eye);
-  if (!o.flip.empty()) write_png(o.flip, render::heat(seen));
+  const ImageDifference d = compare_images(a, b, o.how);
+  if (!o.map.empty()) write_png(o.map, difference_map(a, b, o.how.block, o.scale));
+  const Image seen = flip_difference(b, a, o.eye);
+  if (!o.flip.empty()) write_png(o.flip, heat_image(seen));
   Json json;
-  json["flip"] = render::mean_of(seen);
+  json["flip"] = image_mean(seen);
   std::string text = fmt::format("{:8}{:>12}{:>12}{:>11}{:>9}{:>12}{:>12}\n", "channel", "mean A", "mean B",
                                  "A / B - 1", "z", "MSE", "relMSE");
   for (const auto& c : d.channels) {
@@ -42,13 +42,13 @@ int run_compare(const Context& context, const Options& o) {
                                 {"mse", c.mse},
                                 {"relative_mse", c.relative_mse}});
   }
-  text += fmt::format("FLIP {:.4f}\n", render::mean_of(seen));
+  text += fmt::format("FLIP {:.4f}\n", image_mean(seen));
   if (d.z) {
     text += fmt::format("z-scores of {} blocks of {} pixels ({} left out), quantiles:\n", d.z->blocks,
                         o.how.block * o.how.block, d.z->left_out);
     for (std::size_t i = 0; i < d.z->quantiles.size(); ++i) {
-      text += fmt::format("{:8.0f} %{:8.2f}\n", 100 * render::z_probabilities[i], d.z->quantiles[i]);
-      json["z"].push_back({{"probability", render::z_probabilities[i]}, {"quantile", d.z->quantiles[i]}});
+      text += fmt::format("{:8.0f} %{:8.2f}\n", 100 * z_probabilities[i], d.z->quantiles[i]);
+      json["z"].push_back({{"probability", z_probabilities[i]}, {"quantile", d.z->quantiles[i]}});
     }
   }
   if (context.json) {

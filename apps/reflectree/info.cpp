@@ -54,7 +54,7 @@ Json json_of(const Subject& s, const std::vector<MeasuredFile>& measured) {
             {"channels", s.f.channels()},
             {"target", target_text(d.target)},
             {"domain", reflectree::name_of(d.domain.kind)},
-            {"half_square", d.domain.half},
+            {"half_square", d.domain.half()},
             {"exact_slabs", d.exact.size()},
             {"exact_leaves", leaves_of(d.exact).total},
             {"largest_exact_tree", leaves_of(d.exact).largest},
@@ -109,7 +109,7 @@ void show_info(const Context& context, const std::string& command, const Subject
   line("channels", std::to_string(s.f.channels()));
   line("target", target_text(d.target));
   line("domain", std::string(reflectree::name_of(d.domain.kind)) +
-                     (d.domain.half ? ", half a square (mirror symmetry)" : ", whole square"));
+                     (d.domain.half() ? ", half a square (mirror symmetry)" : ", whole square"));
   line("exact", fmt::format("{} slabs of theta_o, {} leaves, at most {} in a slab", d.exact.size(),
                             exact.total, exact.largest));
   line("one-shot", fmt::format("{} slabs of theta_o, {} leaves, at most {} in a slab", d.one_shot.size(),

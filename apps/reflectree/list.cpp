@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "commands.hpp"
-#include "reflectree/brdf/number_text.hpp"
-#include "reflectree/brdf/registry.hpp"
-#include "reflectree/io/material_file.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/text/number_text.hpp"
+#include "reflectree/brdf/material/registry.hpp"
+#include "reflectree/formats/material_file.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "reflectree/brdf/edit_distance.hpp"
+#include "reflectree/text/edit_distance.hpp"
 #include "reflectree/error.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/verify/trials.hpp"
 

@@ -2,7 +2,7 @@
 // What is doubtful in the measured files of a material, in words and as JSON.
 #pragma once
 
-#include "reflectree/io/measured_facts.hpp"
+#include "reflectree/formats/measured_facts.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "reflectree/render/profile.hpp"
+#include "reflectree/render/integrators/profile.hpp"
 
 namespace reflectree::cli {
 

@@ -5,7 +5,7 @@
 #include "commands.hpp"
 #include "phase_clock.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/render/film.hpp"
+#include "reflectree/render/film/film.hpp"
 
 namespace reflectree::cli {
 

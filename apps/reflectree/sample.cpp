@@ -3,10 +3,10 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "measure.hpp"
-#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/npy.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/npy.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "reflectree/brdf/number_text.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/material_file.hpp"
-#include "reflectree/io/merl.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/material_file.hpp"
+#include "reflectree/formats/merl.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 
 namespace reflectree::cli {
 
@@ -47,7 +47,7 @@ std::optional<Domain> parse_domain(const std::string& text) {
   const std::string_view word = std::string_view(text).substr(0, text.find(':'));
   for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
                                 DomainKind::back_vector}) {
-    if (text == name_of(kind)) return Domain{kind, true, 0};
+    if (text == name_of(kind)) return Domain{kind, Symmetry::mirror, 0};
   }
   if (word == name_of(DomainKind::stretched)) {
     float exponent = 1.5f;
@@ -60,7 +60,7 @@ std::optional<Domain> parse_domain(const std::string& text) {
       }
       exponent = *number;
     }
-    return Domain{DomainKind::stretched, true, exponent};
+    return Domain{DomainKind::stretched, Symmetry::mirror, exponent};
   }
   throw Error("no domain '" + text + "'", "--domain",
               "write auto, projected_disk, equal_area, half_vector, back_vector, mirror_vector, "

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "context.hpp"
-#include "reflectree/brdf/material.hpp"
-#include "reflectree/io/bytes.hpp"
+#include "reflectree/brdf/material/material.hpp"
+#include "reflectree/formats/bytes.hpp"
 #include "reflectree/sampler/sampler.hpp"
 
 namespace reflectree::cli {

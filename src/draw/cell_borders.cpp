@@ -4,7 +4,7 @@
 
 #include "disk_frame.hpp"
 #include "reflectree/draw/material_figures.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::draw {
 
@@ -50,7 +50,7 @@ class BorderPen {
   std::string both_sides(const PathData& data, std::string_view css_class) const {
     if (data.empty()) return "";
     std::string borders;
-    if (domain_.half) {
+    if (domain_.half()) {
       // Named by its content (FNV-1a), so that figures may share a page.
       std::uint64_t hash = 0xcbf29ce484222325ULL;
       for (const char c : data.text()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
@@ -116,32 +116,23 @@ std::string cell_borders(const std::vector<TreeSplit>& nodes, const Domain& doma
   // Each inner node draws the line that halves its box: every border once. The edges of the square are no
   // borders where a leaf continues beyond them: y = 0 of a half square is the pole, and across x = -1 and 1,
   // the plane of incidence, lies the leaf's own mirror image. In a full square it is another leaf's.
-  std::vector<SquareCell> boxes{{-1, 1, domain.half ? 0.f : -1.f, 1}};
-  for (const TreeSplit split : nodes) {
-    const SquareCell c = boxes.back();
-    boxes.pop_back();
+  for_each_node(nodes, domain.symmetry, [&](TreeSplit split, const SquareCell& c) {
     if (split == TreeSplit::leaf) {
-      if (domain.half || c.y0 < 0) continue;
+      if (domain.half() || c.y0 < 0) return;
       for (const float edge : {-1.f, 1.f}) {
         if (c.x0 == edge || c.x1 == edge) pen.draw({edge, c.y0}, {edge, c.y1});
       }
-      continue;
+      return;
     }
-    SquareCell lower_half = c, upper_half = c;
     const bool along_x = split == TreeSplit::x;
     const Vec2<float> centre{0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)};
-    (along_x ? lower_half.x1 : lower_half.y1) = along_x ? centre.x : centre.y;
-    (along_x ? upper_half.x0 : upper_half.y0) = along_x ? centre.x : centre.y;
     const Vec2<float> step =
         along_x ? Vec2<float>{0.25f * (c.x1 - c.x0), 0} : Vec2<float>{0, 0.25f * (c.y1 - c.y0)};
     // A wedge that holds the pole is widest at its rim.
     const Vec2<float> at{centre.x, !along_x ? centre.y : -c.y0 > c.y1 ? c.y0 : c.y1};
-    if (pen.worth_drawing({at.x - step.x, at.y - step.y}, {at.x + step.x, at.y + step.y})) {
-      along_x ? pen.draw({centre.x, c.y0}, {centre.x, c.y1}) : pen.draw({c.x0, centre.y}, {c.x1, centre.y});
-    }
-    boxes.push_back(upper_half);
-    boxes.push_back(lower_half);
-  }
+    if (!pen.worth_drawing({at.x - step.x, at.y - step.y}, {at.x + step.x, at.y + step.y})) return;
+    along_x ? pen.draw({centre.x, c.y0}, {centre.x, c.y1}) : pen.draw({c.x0, centre.y}, {c.x1, centre.y});
+  });
   return pen.text();
 }
 

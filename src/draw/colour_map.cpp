@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "reflectree/text/base64.hpp"
+
 namespace reflectree::draw {
 
 namespace {
@@ -59,6 +61,10 @@ double oklab_lightness(Rgb8 c) {
   const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
   const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
   return 0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s;
+}
+
+std::string png_data_uri(int width, int height, std::span<const std::uint8_t> pixels, const Palette& colours) {
+  return "data:image/png;base64," + base64(encode_indexed_png(width, height, pixels, colours));
 }
 
 }  // namespace reflectree::draw

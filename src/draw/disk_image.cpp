@@ -6,10 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "reflectree/draw/png.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/albedo.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::draw {
 
@@ -17,34 +16,15 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-// Half domains know the directions of one side only; the other is its mirror image.
-Direction folded(const Domain& domain, Direction wi) {
-  return {wi.x, domain.half ? std::abs(wi.y) : wi.y, wi.z};
-}
-
-double total(const std::vector<std::uint32_t>& mass) {
-  double sum = 0;
-  for (const std::uint32_t m : mass) sum += m;
-  return sum;
-}
-
-// A leaf's share of the square.
-double share(const SquareCell& c, const Domain& domain) {
-  return double(c.x1 - c.x0) * double(c.y1 - c.y0) / (domain.half ? 2.0 : 4.0);
-}
-
 // volume * probability / share * shape / projected_area of the leaf that holds wi.
 DiskImage tree_image(const CanonicalTree& tree, const Domain& domain, Direction wo, int size, double volume) {
-  const LeafFinder finder(tree.nodes, domain);
-  const double scale = volume / total(tree.mass);
+  const TreeReader reader(tree, domain.symmetry);
   return disk_image(
       [&](std::span<const Direction> wi, std::span<float> out) {
         for (std::size_t i = 0; i < wi.size(); ++i) {
-          const Vec2<float> p = lower(domain, wo, folded(domain, wi[i]));
+          const Vec2<float> p = lower(domain, wo, fold(domain.symmetry, wi[i]));
           const float projected_area = lift(domain, wo, p).projected_area;
-          const LeafFinder::Leaf leaf = finder.find(p);
-          const double mean = scale * tree.mass[leaf.index] / share(leaf.cell, domain);
-          out[i] = float(mean) * leaf_shape(tree, leaf, p) / projected_area;
+          out[i] = float(volume * reader.density_at(p)) / projected_area;
         }
       },
       size);
@@ -115,12 +95,6 @@ std::size_t slab_of(const Partition& partition, Direction wo) {
   return find_slab(partition, {&theta_o, 1});
 }
 
-float leaf_shape(const CanonicalTree& tree, const LeafFinder::Leaf& leaf, Vec2<float> p) {
-  const SquareCell& c = leaf.cell;
-  const float s = 2 * (p.x - c.x0) / (c.x1 - c.x0) - 1, t = 2 * (p.y - c.y0) / (c.y1 - c.y0) - 1;
-  return (1 + float(tree.slope_x[leaf.index]) / 128 * s) * (1 + float(tree.slope_y[leaf.index]) / 128 * t);
-}
-
 DiskImage bound_image(const SamplerData& data, Direction wo, int size) {
   const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
   return tree_image(tree, data.domain, wo, size, double(tree.volume) * double(albedo_at(data.albedo, wo.z)));
@@ -150,57 +124,21 @@ Axis log_range(const DiskImage& image, double decades) {
 
 std::string disk_raster(const DiskImage& image, const Axis& range, double x, double y, double side,
                         std::string_view css_class, const Palette& colours) {
-  IndexedImage pixels{image.size, image.size, std::vector<std::uint8_t>(image.value.size())};
+  std::vector<std::uint8_t> pixels(image.value.size());
   Axis position = range;
   position.from = 0;
   position.to = 254;
   for (std::size_t i = 0; i < image.value.size(); ++i) {
     const float v = image.value[i];
-    if (!std::isnan(v)) pixels.index[i] = std::uint8_t(1.5 + position.at(double(v)));
+    if (!std::isnan(v)) pixels[i] = std::uint8_t(1.5 + position.at(double(v)));
   }
   return element("image", {{"class", css_class},
                            {"x", number(x - side / 2)},
                            {"y", number(y - side / 2)},
                            {"width", number(side)},
                            {"height", number(side)},
-                           {"href", png_data_uri(pixels, colours)}}) +
+                           {"href", png_data_uri(image.size, image.size, pixels, colours)}}) +
          "\n";
-}
-
-LeafFinder::LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain)
-    : y0_(domain.half ? 0.f : -1.f) {
-  // Preorder: an inner node's upper child follows the whole lower subtree. Read backwards, the starts of
-  // finished subtrees lie on a stack, the lower one on top.
-  nodes_.resize(nodes.size());
-  std::vector<std::size_t> starts;
-  auto leaves = std::size_t(std::count(nodes.begin(), nodes.end(), TreeSplit::leaf));
-  for (std::size_t i = nodes.size(); i-- > 0;) {
-    if (nodes[i] == TreeSplit::leaf) {
-      nodes_[i] = {TreeSplit::leaf, --leaves};
-    } else {
-      if (starts.size() < 2) throw Error("the tree is not complete", "leaf finder", "validate() the sampler");
-      starts.pop_back();
-      nodes_[i] = {nodes[i], starts.back()};
-      starts.pop_back();
-    }
-    starts.push_back(i);
-  }
-  if (starts.size() != 1) throw Error("the tree is not complete", "leaf finder", "validate() the sampler");
-}
-
-LeafFinder::Leaf LeafFinder::find(Vec2<float> p) const {
-  SquareCell c{-1, 1, y0_, 1};
-  std::size_t i = 0;
-  while (nodes_[i].split != TreeSplit::leaf) {
-    const bool along_x = nodes_[i].split == TreeSplit::x;
-    float& lo = along_x ? c.x0 : c.y0;
-    float& hi = along_x ? c.x1 : c.y1;
-    const float middle = 0.5f * (lo + hi);
-    const bool upper = (along_x ? p.x : p.y) >= middle;
-    (upper ? lo : hi) = middle;
-    i = upper ? nodes_[i].upper_or_leaf : i + 1;
-  }
-  return {nodes_[i].upper_or_leaf, c};
 }
 
 }  // namespace reflectree::draw

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/draw/material_report.hpp"
 
-#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
 
 namespace reflectree::draw {
 

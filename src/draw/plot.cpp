@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflectree/draw/png.hpp"
 
 namespace reflectree::draw {
 
@@ -86,15 +85,15 @@ std::string curve(const Frame& f, std::span<const double> x, std::span<const dou
 }
 
 std::string colour_bar(const ColourBar& bar) {
-  IndexedImage strip{255, 1, std::vector<std::uint8_t>(255)};
-  for (std::size_t i = 0; i < 255; ++i) strip.index[i] = std::uint8_t(i + 1);
+  std::vector<std::uint8_t> strip(255);
+  for (std::size_t i = 0; i < 255; ++i) strip[i] = std::uint8_t(i + 1);
   const double left = bar.values.from, right = bar.values.to, below = bar.y + bar.height;
   std::string out = element("image", {{"x", number(left)},
                                       {"y", number(bar.y)},
                                       {"width", number(right - left)},
                                       {"height", number(bar.height)},
                                       {"preserveAspectRatio", "none"},
-                                      {"href", png_data_uri(strip, *bar.colours)}}) +
+                                      {"href", png_data_uri(255, 1, strip, *bar.colours)}}) +
                     "\n";
   out += rectangle(left, bar.y, right - left, bar.height, "bar-edge");
   for (const Tick& t : ticks(bar.values)) {

@@ -10,16 +10,10 @@ namespace reflectree::draw {
 
 Figure square_figure(const SamplerData& data, Direction wo) {
   const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
-  const std::vector<SquareCell> cells = leaf_cells(tree.nodes, data.domain);
-  const LeafFinder finder(tree.nodes, data.domain);
-  double mass = 0, hi = 0, lo = 1e300;
-  for (const std::uint32_t m : tree.mass) mass += m;
-  const auto bound = [&](Vec2<float> p) {
-    const LeafFinder::Leaf leaf = finder.find(p);
-    const SquareCell& c = leaf.cell;
-    const double area = double(c.x1 - c.x0) * double(c.y1 - c.y0) / (data.domain.half ? 2 : 4);
-    return double(tree.volume) * tree.mass[leaf.index] / mass / area * double(leaf_shape(tree, leaf, p));
-  };
+  const std::vector<SquareCell> cells = leaf_cells(tree.nodes, data.domain.symmetry);
+  const TreeReader reader(tree, data.domain.symmetry);
+  double hi = 0, lo = 1e300;
+  const auto bound = [&](Vec2<float> p) { return double(tree.volume) * reader.density_at(p); };
   for (const SquareCell& c : cells) {
     for (const float x : {0.01f, 0.99f}) {
       for (const float y : {0.01f, 0.99f}) {
@@ -30,7 +24,7 @@ Figure square_figure(const SamplerData& data, Direction wo) {
     }
   }
   const double total_width = 560;
-  SquarePlace place{0, 48, data.domain.half ? 440.0 : 320.0, data.domain.half};
+  SquarePlace place{0, 48, data.domain.half() ? 440.0 : 320.0, data.domain.half()};
   place.x = (total_width - place.width) / 2;
   const Axis range{std::max(lo, hi * 1e-4), std::max(hi, lo * 10), place.x, place.x + place.width, true};
   Figure figure{total_width, place.y + place.height() + 82, "The tree on its square", {}, {}};

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/draw/square_image.hpp"
 
-#include "reflectree/draw/png.hpp"
-
 namespace reflectree::draw {
 
 std::string square_raster(const std::function<double(Vec2<float>)>& g, const Axis& range,
                           const SquarePlace& place, int size) {
   const int rows = place.half ? size / 2 : size;
-  IndexedImage pixels{size, rows, {}};
+  std::vector<std::uint8_t> pixels;
   Axis position = range;
   position.from = 0;
   position.to = 254;
@@ -16,7 +14,7 @@ std::string square_raster(const std::function<double(Vec2<float>)>& g, const Axi
     const float y = (float(rows - row) - 0.5f) / float(rows);
     for (int column = 0; column < size; ++column) {
       const float x = 2 * (float(column) + 0.5f) / float(size) - 1;
-      pixels.index.push_back(std::uint8_t(1.5 + position.at(g({x, place.half ? y : 2 * y - 1}))));
+      pixels.push_back(std::uint8_t(1.5 + position.at(g({x, place.half ? y : 2 * y - 1}))));
     }
   }
   return element("image", {{"x", number(place.x)},
@@ -24,7 +22,7 @@ std::string square_raster(const std::function<double(Vec2<float>)>& g, const Axi
                            {"width", number(place.width)},
                            {"height", number(place.height())},
                            {"preserveAspectRatio", "none"},
-                           {"href", png_data_uri(pixels, palette())}}) +
+                           {"href", png_data_uri(size, rows, pixels, palette())}}) +
          "\n";
 }
 

@@ -2,42 +2,14 @@
 #include "reflectree/math/cubature.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "reflectree/math/genz_malik.hpp"
 #include "reflectree/math/sum.hpp"
 
 namespace reflectree {
 namespace {
-
-// The fully symmetric rule on [-1, 1]^2, normalised to area 1; Genz & Malik 1980, table for n = 2.
-// Orbits: centre, (+-l2, 0), (+-l4, 0), (+-l4, +-l4), (+-l5, +-l5).
-constexpr std::size_t rule_points = 17;
-constexpr double l2 = 0.35856858280031809199;  // sqrt(9/70)
-constexpr double l4 = 0.94868329805051379960;  // sqrt(9/10)
-constexpr double l5 = 0.68824720161168529772;  // sqrt(9/19)
-constexpr std::array<double, 5> weight7 = {-3816. / 19683, 980. / 6561, 1020. / 19683, 200. / 19683,
-                                           6859. / 78732};
-constexpr std::array<double, 5> weight5 = {-971. / 729, 245. / 486, 65. / 1458, 25. / 729, 0.};
-
-constexpr std::array<Vec2<double>, rule_points> nodes = {{{0, 0},
-                                                          {-l2, 0},
-                                                          {l2, 0},
-                                                          {0, -l2},
-                                                          {0, l2},
-                                                          {-l4, 0},
-                                                          {l4, 0},
-                                                          {0, -l4},
-                                                          {0, l4},
-                                                          {-l4, -l4},
-                                                          {l4, -l4},
-                                                          {-l4, l4},
-                                                          {l4, l4},
-                                                          {-l5, -l5},
-                                                          {l5, -l5},
-                                                          {-l5, l5},
-                                                          {l5, l5}}};
 
 struct Region {
   CubatureBox box;
@@ -50,24 +22,17 @@ bool smaller_error(const Region& a, const Region& b) { return a.error < b.error;
 void append_points(const CubatureBox& r, std::vector<Vec2<double>>& points) {
   const double cx = 0.5 * (r.x0 + r.x1), cy = 0.5 * (r.y0 + r.y1);
   const double hx = 0.5 * (r.x1 - r.x0), hy = 0.5 * (r.y1 - r.y0);
-  for (const auto& n : nodes) points.push_back({cx + hx * n.x, cy + hy * n.y});
+  for (const auto& n : genz_malik_nodes<double>()) points.push_back({cx + hx * n.x, cy + hy * n.y});
 }
 
 void apply_rule(const double* f, const CubatureBox& domain, Region& region) {
-  const std::array<double, 5> orbit = {f[0], f[1] + f[2] + f[3] + f[4], f[5] + f[6] + f[7] + f[8],
-                                       f[9] + f[10] + f[11] + f[12], f[13] + f[14] + f[15] + f[16]};
-  double degree7 = 0, degree5 = 0;
-  for (std::size_t i = 0; i < orbit.size(); ++i) {
-    degree7 += weight7[i] * orbit[i];
-    degree5 += weight5[i] * orbit[i];
-  }
+  const GenzMalikSums sums = genz_malik([f](std::size_t i) { return f[i]; });
   const CubatureBox& r = region.box;
   const double width = r.x1 - r.x0, height = r.y1 - r.y0;
-  region.value = width * height * degree7;
-  region.error = width * height * std::abs(degree7 - degree5);
-  // Fourth differences, l2^2 / l4^2 = 1/7; of nearly equal ones the longer side is halved.
-  const double dx = std::abs(f[1] + f[2] - 2 * f[0] - (f[5] + f[6] - 2 * f[0]) / 7);
-  const double dy = std::abs(f[3] + f[4] - 2 * f[0] - (f[7] + f[8] - 2 * f[0]) / 7);
+  region.value = width * height * sums.degree7;
+  region.error = width * height * std::abs(sums.degree7 - sums.degree5);
+  // Of nearly equal differences the longer side is halved.
+  const double dx = sums.difference_x, dy = sums.difference_y;
   const bool longer_x = width * (domain.y1 - domain.y0) >= height * (domain.x1 - domain.x0);
   region.split_x = std::abs(dx - dy) <= 0.1 * std::max(dx, dy) ? longer_x : dx > dy;
 }
@@ -95,7 +60,7 @@ class Cubature {
     f_(points_, values_);
     evaluations_ += points_.size();
     for (std::size_t i = 0; i < regions.size(); ++i) {
-      apply_rule(values_.data() + i * rule_points, domain_, regions[i]);
+      apply_rule(values_.data() + i * genz_malik_points, domain_, regions[i]);
       finite_ = finite_ && std::isfinite(regions[i].value) && std::isfinite(regions[i].error);
     }
   }
@@ -122,7 +87,7 @@ class Cubature {
     parents_.clear();
     children_.clear();
     const std::size_t most = std::min({max_batch / 2, std::max<std::size_t>(8, heap_.size() / 8),
-                                       (options_.max_evaluations - evaluations_) / (2 * rule_points)});
+                                       (options_.max_evaluations - evaluations_) / (2 * genz_malik_points)});
     double rest = error_.value();
     while (parents_.size() < most && !heap_.empty() && (parents_.empty() || rest > tolerance())) {
       std::pop_heap(heap_.begin(), heap_.end(), smaller_error);
@@ -190,7 +155,7 @@ class Cubature {
   }
   bool finished() const {
     return !finite_ || heap_.empty() || error_bound() <= tolerance() ||
-           evaluations_ + 2 * rule_points > options_.max_evaluations;
+           evaluations_ + 2 * genz_malik_points > options_.max_evaluations;
   }
 
   static constexpr std::size_t max_batch = 2048;  // regions in one call of the integrand

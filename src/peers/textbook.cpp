@@ -4,7 +4,7 @@
 // visible normals: its V-cavities have none of Smith's.
 #include "textbook.hpp"
 
-#include "reflectree/brdf/registry.hpp"
+#include "reflectree/brdf/material/registry.hpp"
 
 namespace reflectree {
 

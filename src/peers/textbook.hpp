@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "reflectree/peers/lobe.hpp"
 
 namespace reflectree {

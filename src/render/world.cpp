@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flat.hpp"
-#include "reflectree/render/profile.hpp"
+#include "shapes/flat.hpp"
+#include "reflectree/render/integrators/profile.hpp"
 
 namespace reflectree::render {
 

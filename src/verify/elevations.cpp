@@ -51,14 +51,14 @@ std::vector<Direction> border_viewers(const PackedSampler& packed, std::size_t c
 }
 
 std::vector<double> table_places(const PackedSampler& packed, std::size_t count, Pcg32& u) {
-  const std::vector<float>& borders = packed.albedo_lookup.borders();
+  const std::vector<float>& borders = packed.albedo.lookup.borders();
   std::vector<double> nodes(borders.begin(), borders.end());
   nodes.back() = 1;
   struct Place {
     double bend, cosine;
   };
   std::vector<Place> places;
-  const auto albedo = [&](std::size_t i) { return double(packed.albedo_at(float(nodes[i]))); };
+  const auto albedo = [&](std::size_t i) { return double(packed.albedo.at(float(nodes[i]))); };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     double bend = 0;
     if (i > 0 && i + 1 < nodes.size()) {

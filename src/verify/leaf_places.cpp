@@ -8,8 +8,8 @@
 
 #include "elevations.hpp"
 #include "parallel.hpp"
-#include "reflectree/sampler/domain_map.hpp"
-#include "reflectree/sampler/incidence.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
+#include "reflectree/sampler/known/incidence.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree {
@@ -34,8 +34,8 @@ struct Place {
 // Down the packed tree by halving cells; the shares of probability play no part.
 std::optional<Place> locate(const PackedSampler& packed, Direction wo, Direction wi) {
   Incidence in;
-  if (!find_incidence(packed, wo, in)) return std::nullopt;
-  const bool half = packed.domain.half;
+  if (!find_incidence(packed.albedo, wo, in)) return std::nullopt;
+  const bool half = packed.domain.half();
   Direction local = to_incidence(in, wi);
   if (half) local.y = std::abs(local.y);
   const Vec2<float> p = lower(packed.domain, in.wo, local);

@@ -51,9 +51,9 @@ CheckResult check_albedo(const SamplerData& data, const PackedSampler& packed) {
       const double slope = (a1 - a0) / (c1 - c0), base = a0 - slope * c0;
       const double rounding = 3e-7 * (std::abs(base) + std::abs(slope * double(c))) + 1e-7 * expected + 1e-37;
       worst.see(
-          std::abs(double(packed.albedo_at(c)) - expected), rounding,
+          std::abs(double(packed.albedo.at(c)) - expected), rounding,
           text("theta_o %.4f deg: %.8g for %.8g", std::acos(std::min(double(c), 1.)) * 180 / pi_v<double>,
-               double(packed.albedo_at(c)), expected));
+               double(packed.albedo.at(c)), expected));
     }
   }
   return worst.result("packed_albedo");
@@ -86,19 +86,19 @@ void check_borders(const char* mode, const Partition& partition, const PackedFor
 void check_leaves(const std::string& place, const CanonicalTree& tree, const Domain& domain,
                   const PackedSlab& slab, const PackedLeaf* leaves, std::span<const double> height,
                   Worst& worst) {
-  const std::vector<SquareCell> cells = leaf_cells(tree.nodes, domain);
-  const double y0 = domain.half ? 0 : -1, unit_y = domain.half ? 0x1p-15 : 0x1p-14;
+  const std::vector<SquareCell> cells = leaf_cells(tree.nodes, domain.symmetry);
+  const double y0 = domain.half() ? 0 : -1, unit_y = domain.half() ? 0x1p-15 : 0x1p-14;
   double volume = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const PackedLeaf& l = leaves[i];
     const double x = -1 + double(l.x) * 0x1p-14, y = y0 + double(l.y) * unit_y;
-    const double width = std::ldexp(2., -l.level_x), length = std::ldexp(domain.half ? 1. : 2., -l.level_y);
+    const double width = std::ldexp(2., -l.level_x), length = std::ldexp(domain.half() ? 1. : 2., -l.level_y);
     worst.must(x == double(cells[i].x0) && y == double(cells[i].y0) && x + width == double(cells[i].x1) &&
                    y + length == double(cells[i].y1),
                place + text(", leaf %.0f: another cell", double(i)));
     worst.must(l.slope_x == tree.slope_x[i] && l.slope_y == tree.slope_y[i],
                place + text(", leaf %.0f: another slope", double(i)));
-    const double share = width * length / (domain.half ? 2 : 4);
+    const double share = width * length / (domain.half() ? 2 : 4);
     worst.see(
         std::abs(double(l.height) - height[i] / share), 2e-7 * height[i] / share,
         place + text(", leaf %.0f: height %.8g for %.8g", double(i), double(l.height), height[i] / share));

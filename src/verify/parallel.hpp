@@ -3,7 +3,7 @@
 
 #include "reflectree/error.hpp"
 #include "reflectree/math/random.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree::detail {
 

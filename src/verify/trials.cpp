@@ -8,8 +8,8 @@
 
 #include "elevations.hpp"
 #include "parallel.hpp"
-#include "reflectree/sampler/albedo.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree {
@@ -93,7 +93,7 @@ namespace {
 // The leaf that holds a point of the square, in a canonical tree.
 class LeafFinder {
  public:
-  LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain) : half_(domain.half) {
+  LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain) : half_(domain.half()) {
     std::size_t next = 0, leaf = 0;
     nodes_.reserve(nodes.size());
     add(nodes, next, leaf);
@@ -151,7 +151,7 @@ class Bounds {
     const std::size_t slab = find_slab(data_.exact_partition, {&theta, 1});
     const CanonicalTree& tree = data_.exact[slab];
     const auto leaf = finders_[slab].find(p);
-    const double share = leaf.width * leaf.length / (data_.domain.half ? 2 : 4);
+    const double share = leaf.width * leaf.length / (data_.domain.half() ? 2 : 4);
     const double s = 2 * (double(p.x) - leaf.x) / leaf.width - 1;
     const double t = 2 * (double(p.y) - leaf.y) / leaf.length - 1;
     const double q = (1 + tree.slope_x[leaf.index] / 128. * s) * (1 + tree.slope_y[leaf.index] / 128. * t);
@@ -174,7 +174,7 @@ RatioFunction bound_ratio(AnyBrdf f, const SamplerData& data) {
     std::vector<std::size_t> index;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const float y = float(points[i][2]);
-      const Vec2<float> p{2 * float(points[i][1]) - 1, data.domain.half ? y : 2 * y - 1};
+      const Vec2<float> p{2 * float(points[i][1]) - 1, data.domain.half() ? y : 2 * y - 1};
       const Direction wo = direction_from_angles(89.999f * (pi / 180) * float(points[i][0]), 0.f);
       const DomainPoint at = lift(data.domain, wo, p);
       ratio[i] = 0;

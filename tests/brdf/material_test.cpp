@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/material/material.hpp"
 
 #include <gtest/gtest.h>
 
 #include <locale>
 
 #include "all_models.hpp"
-#include "reflectree/brdf/number_text.hpp"
-#include "reflectree/brdf/registry.hpp"
+#include "reflectree/text/number_text.hpp"
+#include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/error.hpp"
 
 namespace reflectree {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/brdf/mixture.hpp"
+#include "reflectree/brdf/material/mixture.hpp"
 
 #include <gtest/gtest.h>
 

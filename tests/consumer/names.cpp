@@ -2,8 +2,8 @@
 // Somebody's program has words of its own and says `using namespace reflectree`: its own are meant, without a
 // word about whose. tests/guard compiles this with every public header, and once with a planted clash.
 #include <cstdio>
-#include <reflectree/brdf/mixture.hpp>
-#include <reflectree/brdf/registry.hpp>
+#include <reflectree/brdf/material/mixture.hpp>
+#include <reflectree/brdf/material/registry.hpp>
 #include <reflectree/math/cubature.hpp>
 #include <reflectree/math/frame.hpp>
 #include <reflectree/math/sum.hpp>

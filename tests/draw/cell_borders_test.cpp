@@ -51,8 +51,8 @@ double off_the_ring(const std::string& svg, double radius) {
   return worst;
 }
 
-constexpr Domain disk_half{DomainKind::projected_disk, true, 0},
-    disk_full{DomainKind::projected_disk, false, 0};
+constexpr Domain disk_half{DomainKind::projected_disk, Symmetry::mirror, 0},
+    disk_full{DomainKind::projected_disk, Symmetry::none, 0};
 const std::vector<TreeSplit> one_leaf{TreeSplit::leaf},
     along_y{TreeSplit::y, TreeSplit::leaf, TreeSplit::leaf},
     along_x{TreeSplit::x, TreeSplit::leaf, TreeSplit::leaf};
@@ -73,7 +73,7 @@ TEST(CellBorders, AnAzimuthIsASpokeFromThePole) {
   for (const Point& p : points_of(borders(along_x, disk_half, viewer_at(0.5f)))) EXPECT_NEAR(p.x, 200, 0.11);
   // Of half vectors: from the mirror direction, across the plane of incidence, to the rim.
   const Direction wo = viewer_at(0.9f);
-  const std::vector<Point> spoke = points_of(borders(along_x, {DomainKind::half_vector, true, 0}, wo));
+  const std::vector<Point> spoke = points_of(borders(along_x, {DomainKind::half_vector, Symmetry::mirror, 0}, wo));
   ASSERT_FALSE(spoke.empty());
   EXPECT_NEAR(spoke.front().x, 200 - 100 * double(wo.x), 0.2);
   EXPECT_NEAR(spoke.front().y, 200, 0.2);

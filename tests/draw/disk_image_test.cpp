@@ -48,28 +48,6 @@ TEST(LogRange, AtLeastADecadeAtMostFive) {
   EXPECT_NEAR(wide.lo, 1e-3, 1e-9);
 }
 
-TEST(LeafFinder, AgreesWithLeafCells) {
-  const std::vector<TreeSplit> nodes{TreeSplit::x,    TreeSplit::y,    TreeSplit::leaf, TreeSplit::x,
-                                     TreeSplit::leaf, TreeSplit::leaf, TreeSplit::leaf};
-  for (const bool half : {false, true}) {
-    const Domain domain{DomainKind::equal_area, half, 0};
-    const std::vector<SquareCell> cells = leaf_cells(nodes, domain);
-    const LeafFinder finder(nodes, domain);
-    ASSERT_EQ(cells.size(), 4U);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const SquareCell& c = cells[i];
-      EXPECT_EQ(finder.find({0.5f * (c.x0 + c.x1), 0.5f * (c.y0 + c.y1)}).index, i);
-    }
-  }
-}
-
-TEST(LeafFinder, RefusesATornTree) {
-  const Domain domain{};
-  EXPECT_THROW(LeafFinder({TreeSplit::x, TreeSplit::leaf}, domain), Error);
-  EXPECT_THROW(LeafFinder({TreeSplit::leaf, TreeSplit::leaf}, domain), Error);
-  EXPECT_THROW(LeafFinder({}, domain), Error);
-}
-
 class TreeImages : public testing::TestWithParam<DomainKind> {};
 
 TEST_P(TreeImages, BoundsLieAboveTheTargetAndHoldTheVolume) {
@@ -108,7 +86,7 @@ TEST_P(TreeImages, HalvedMassesAreSeenBelowTheTarget) {
 
 TEST(TreeImage, ASlopeTiltsTheLeaf) {
   const AnyBrdf f = Lambert{};
-  SamplerData data = toy_sampler(f, {DomainKind::projected_disk, true, 0}, 0);
+  SamplerData data = toy_sampler(f, {DomainKind::projected_disk, Symmetry::mirror, 0}, 0);
   const Direction wo = viewer_at(0.5f);
   const DiskImage flat = bound_image(data, wo, 64);
   data.exact[0].slope_x[0] = 64;

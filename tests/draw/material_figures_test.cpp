@@ -164,7 +164,7 @@ TEST(SamplesFigure, OneDotASample) {
 
 TEST(TreeFigure, CountsLeavesAndNamesTheSlab) {
   const AnyBrdf f = Lambert{};
-  const SamplerData data = toy_sampler(f, {DomainKind::projected_disk, true, 0}, 6);
+  const SamplerData data = toy_sampler(f, {DomainKind::projected_disk, Symmetry::mirror, 0}, 6);
   const Direction wo = viewer_at(70 * degree);
   const Figure figure = tree_figure(data, wo, log_range(target_image(f, {}, wo, 40)));
   EXPECT_NE(figure.title.find("64 leaves"), figure.title.npos);
@@ -172,7 +172,7 @@ TEST(TreeFigure, CountsLeavesAndNamesTheSlab) {
 }
 
 TEST(SlabsFigure, CountsAndDrawsEverySlab) {
-  const SamplerData data = toy_sampler(Lambert{}, {DomainKind::projected_disk, true, 0}, 6);
+  const SamplerData data = toy_sampler(Lambert{}, {DomainKind::projected_disk, Symmetry::mirror, 0}, 6);
   const Figure figure = slabs_figure(data);
   EXPECT_NE(figure.description.find("exact: 2 slabs, 128 leaves; one-shot: 2 slabs, 128 leaves"),
             std::string::npos)

@@ -14,7 +14,7 @@ namespace {
 
 TEST(MaterialReport, TakesItsFiguresFromTheData) {
   const AnyBrdf f = Lambert{};
-  SamplerData data = toy_sampler(f, {DomainKind::equal_area, true, 0}, 5);
+  SamplerData data = toy_sampler(f, {DomainKind::equal_area, Symmetry::mirror, 0}, 5);
   data.report.expected_trials = 1.25f;
   const ReportFigures figures = figures_of(data);
   EXPECT_EQ(figures.domain, "equal_area");
@@ -31,7 +31,7 @@ TEST(MaterialReport, TakesItsFiguresFromTheData) {
 
 TEST(MaterialReport, DrawsEveryView) {
   const AnyBrdf f = Lambert{};
-  const SamplerData data = toy_sampler(f, {DomainKind::projected_disk, true, 0}, 4);
+  const SamplerData data = toy_sampler(f, {DomainKind::projected_disk, Symmetry::mirror, 0}, 4);
   std::vector<Direction> asked;
   const std::array<float, 2> views{0.f, 1.f};
   const ReportMaterial material = material_report(f, data, views, [&](Direction wo) {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "reflectree/draw/disk_image.hpp"
-#include "reflectree/sampler/albedo.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree {
 
@@ -31,7 +31,7 @@ inline SamplerData toy_sampler(const AnyBrdf& f, const Domain& domain, int level
   const int n = 96;
   const auto point = [&](int i, int j) {
     const float y = (float(j) + 0.5f) / n;
-    return Vec2<float>{2 * (float(i) + 0.5f) / n - 1, domain.half ? y : 2 * y - 1};
+    return Vec2<float>{2 * (float(i) + 0.5f) / n - 1, domain.half() ? y : 2 * y - 1};
   };
   for (int k = 1; k <= 16; ++k) {
     const float c = float(k) / 16;
@@ -44,7 +44,7 @@ inline SamplerData toy_sampler(const AnyBrdf& f, const Domain& domain, int level
   }
   std::vector<TreeSplit> nodes;
   split_evenly(nodes, levels);
-  const draw::LeafFinder finder(nodes, domain);
+  const LeafFinder finder(nodes, domain.symmetry);
   const std::size_t leaves = (nodes.size() + 1) / 2;
   for (int slab = 0; slab < 2; ++slab) {
     std::vector<double> most(leaves, 1e-3);

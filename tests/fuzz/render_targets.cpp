@@ -4,10 +4,10 @@
 
 #include "../scratch.hpp"
 #include "expect.hpp"
-#include "reflectree/io/file.hpp"
-#include "reflectree/io/image.hpp"
-#include "reflectree/render/film.hpp"
-#include "reflectree/render/mesh_files.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/picture/image.hpp"
+#include "reflectree/render/film/film.hpp"
+#include "reflectree/render/shapes/mesh_files.hpp"
 #include "targets.hpp"
 
 namespace reflectree::fuzz {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "targets.hpp"
 
-#include "../io/synthetic.hpp"
-#include "../io/synthetic_sampler.hpp"
+#include "../formats/synthetic.hpp"
+#include "../formats/synthetic_sampler.hpp"
 #include "expect.hpp"
-#include "reflectree/brdf/material.hpp"
-#include "reflectree/brdf/registry.hpp"
-#include "reflectree/io/checksum.hpp"
-#include "reflectree/io/material_file.hpp"
-#include "reflectree/io/merl.hpp"
-#include "reflectree/io/parameter_table.hpp"
-#include "reflectree/io/rgl.hpp"
-#include "reflectree/io/sampler_file.hpp"
+#include "reflectree/brdf/material/material.hpp"
+#include "reflectree/brdf/material/registry.hpp"
+#include "reflectree/formats/checksum.hpp"
+#include "reflectree/formats/material_file.hpp"
+#include "reflectree/formats/merl.hpp"
+#include "reflectree/formats/parameter_table.hpp"
+#include "reflectree/formats/rgl.hpp"
+#include "reflectree/formats/sampler_file.hpp"
 #include "reflectree/sampler/sampler.hpp"
 
 namespace reflectree::fuzz {
@@ -136,7 +136,7 @@ std::vector<Bytes> material_seeds() {
 }
 std::vector<Bytes> sampler_seeds() {
   SamplerData half = synthetic::sampler_data();
-  half.domain = {DomainKind::half_vector, true, 0};
+  half.domain = {DomainKind::half_vector, Symmetry::mirror, 0};
   return {encode_sampler(synthetic::sampler_data()), encode_sampler(half)};
 }
 std::vector<Bytes> grammar_seeds() {

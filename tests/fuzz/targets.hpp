@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reflectree/io/bytes.hpp"
+#include "reflectree/formats/bytes.hpp"
 
 namespace reflectree::fuzz {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "reflectree/io/file.hpp"
+#include "reflectree/formats/file.hpp"
 #include "targets.hpp"
 
 int main(int argc, char** argv) {

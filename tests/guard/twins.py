@@ -17,7 +17,7 @@ class Planted(unittest.TestCase):
         self.root = pathlib.Path(self.folder.name)
         self.plant("include/reflectree/math/scalar.hpp", "#include <cmath>\n")
         self.plant("include/reflectree/brdf/value.hpp", '#include "reflectree/math/scalar.hpp"\n')
-        self.plant("src/io/png.cpp", '#include <png.h>\n#include "reflectree/brdf/value.hpp"\n')
+        self.plant("src/picture/png.cpp", '#include <png.h>\n#include "reflectree/brdf/value.hpp"\n')
 
     def tearDown(self):
         self.folder.cleanup()
@@ -41,7 +41,7 @@ class Planted(unittest.TestCase):
         self.assert_caught(layers.broken_arrows, "math may not see brdf")
 
     def test_upward_include_in_a_source(self):
-        self.plant("src/sampler/build.cpp", '  #  include "reflectree/io/sampler_file.hpp"\n')
+        self.plant("src/sampler/build/build.cpp", '  #  include "reflectree/formats/sampler_file.hpp"\n')
         self.assert_caught(layers.broken_arrows, "sampler may not see io")
 
     def test_sideways_include_at_the_rim(self):
@@ -49,16 +49,16 @@ class Planted(unittest.TestCase):
         self.assert_caught(layers.broken_arrows, "verify may not see draw")
 
     def test_library_in_the_core(self):
-        self.plant("src/brdf/registry.cpp", "#include <fmt/core.h>\n")
+        self.plant("src/brdf/material/registry.cpp", "#include <fmt/core.h>\n")
         self.assert_caught(layers.broken_arrows, "standard library alone")
 
     def test_private_header_of_another_room(self):
         self.plant("src/math/secret.hpp", "")
-        self.plant("src/sampler/build.cpp", '#include "../math/secret.hpp"\n')
+        self.plant("src/sampler/build/build.cpp", '#include "../math/secret.hpp"\n')
         self.assert_caught(layers.broken_arrows, "reaches into another folder")
 
     def test_embree_elsewhere(self):
-        self.plant("src/render/film.cpp", "#include <embree3/rtcore.h>\n")
+        self.plant("src/render/film/film.cpp", "#include <embree3/rtcore.h>\n")
         self.assert_caught(layers.broken_arrows, "embree_scene alone")
 
     def test_unknown_room(self):
@@ -78,7 +78,7 @@ class Planted(unittest.TestCase):
         self.assert_caught(house_rules.broken_rules, "left for later")
 
     def test_absolute_path(self):
-        self.plant("src/io/data.cpp", 'const char* folder = "/' + 'home/someone/data";\n')
+        self.plant("src/formats/data.cpp", 'const char* folder = "/' + 'home/someone/data";\n')
         self.assert_caught(house_rules.broken_rules, "absolute path")
 
 

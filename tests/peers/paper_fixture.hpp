@@ -2,7 +2,7 @@
 // What the tests of the paper's tree and of its sampler share.
 #pragma once
 
-#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "reflectree/peers/paper_choice.hpp"
 
 namespace reflectree {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "reflectree/io/material_file.hpp"
+#include "reflectree/formats/material_file.hpp"
 #include "reflectree/peers/registry.hpp"
 #include "reflectree/verify/chi_square.hpp"
 #include "reflectree/verify/consistency.hpp"

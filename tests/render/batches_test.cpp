@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "../../src/render/visible_slope.hpp"
+#include "../../src/render/materials/visible_slope.hpp"
 #include "reflectree/render/world.hpp"
 #include "small_scenes.hpp"
 

@@ -3,7 +3,7 @@
 // and photon mapping.
 #include <gtest/gtest.h>
 
-#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "small_scenes.hpp"
 
 namespace reflectree::render {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "reflectree/math/random.hpp"
-#include "reflectree/render/lights.hpp"
+#include "reflectree/render/lights/lights.hpp"
 #include "small_scenes.hpp"
 
 namespace reflectree::render {

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "reflectree/error.hpp"
-#include "reflectree/render/film.hpp"
-#include "reflectree/render/image_compare.hpp"
+#include "reflectree/render/film/film.hpp"
+#include "reflectree/picture/image_compare.hpp"
 
 namespace reflectree::render {
 namespace {
@@ -26,8 +26,8 @@ Image noise(std::uint64_t seed, float shift) {
 }
 
 TEST(ImageCompare, EqualMeansHaveNormalScoresAndABiasIsSeen) {
-  const ImageDifference same = compare(noise(1, 0), noise(2, 0)),
-                        biased = compare(noise(1, .01f), noise(2, 0));
+  const ImageDifference same = compare_images(noise(1, 0), noise(2, 0)),
+                        biased = compare_images(noise(1, .01f), noise(2, 0));
   ASSERT_TRUE(same.z && biased.z);
   EXPECT_EQ(same.z->blocks, 3U * 64U);
   EXPECT_NEAR(same.z->quantiles[3], 0, .3);
@@ -35,7 +35,7 @@ TEST(ImageCompare, EqualMeansHaveNormalScoresAndABiasIsSeen) {
   EXPECT_GT(biased.z->quantiles[3], 2) << "1 % at an error of 2 % a pixel, 64 pixels a block";
   EXPECT_NEAR(same.channels[0].mse, 8e-4, 1e-4);
   EXPECT_NEAR(same.channels[0].relative_mse, 8e-4 / 1.01, 1e-4);
-  EXPECT_THROW(compare(noise(1, 0), make_image(2, 2, {"R", "G", "B"})), Error);
+  EXPECT_THROW(compare_images(noise(1, 0), make_image(2, 2, {"R", "G", "B"})), Error);
 }
 
 struct Pair {
@@ -101,13 +101,13 @@ TEST_P(Mitsuba, ShowsTheSamePicture) {
   const auto agrees = [](const ChannelDifference& c) {
     return std::abs(c.mean_a - c.mean_b) < .003 * c.mean_b + 3.5 * c.mean_error;
   };
-  for (const ChannelDifference& c : compare(ours, theirs).channels) {
+  for (const ChannelDifference& c : compare_images(ours, theirs).channels) {
     std::printf("%s %s: ours / Mitsuba's %.4f +- %.4f\n", GetParam(), c.channel.c_str(), c.mean_a / c.mean_b,
                 c.mean_error / c.mean_b);
     EXPECT_TRUE(agrees(c)) << c.channel;
   }
   for (std::size_t i = 0; i < ours.values.size(); ++i) ours.values[i] *= i % 6 < 3 ? 1.1f : 1;
-  const ImageDifference biased = compare(ours, theirs);
+  const ImageDifference biased = compare_images(ours, theirs);
   EXPECT_FALSE(agrees(biased.channels[0]) && agrees(biased.channels[1]) && agrees(biased.channels[2]))
       << "a planted bias of 10 %";
 }

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "../scratch.hpp"
-#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/render/film.hpp"
+#include "reflectree/render/film/film.hpp"
 
 namespace reflectree::render {
 namespace {

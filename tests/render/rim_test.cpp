@@ -7,7 +7,7 @@
 
 #include "../scratch.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/render/film.hpp"
+#include "reflectree/render/film/film.hpp"
 
 namespace reflectree::render {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflectree/render/scattering.hpp"
+#include "reflectree/render/materials/scattering.hpp"
 
 namespace reflectree::render {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "reflectree/error.hpp"
 #include "reflectree/peers/registry.hpp"
-#include "reflectree/render/film.hpp"
+#include "reflectree/render/film/film.hpp"
 
 namespace reflectree::render {
 

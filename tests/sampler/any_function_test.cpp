@@ -8,7 +8,7 @@
 #include "functions.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
 #include "reflectree/simd/sample_batch.hpp"
 
 namespace reflectree {
@@ -218,7 +218,7 @@ TEST(Options, OutOfRangeAreRefusedByName) {
   }
   EXPECT_TRUE(has(with([](BuildOptions& o) { o.target = {TargetKind::channel, 1}; }), "channel 1 of 1"));
   EXPECT_TRUE(has(with([](BuildOptions& o) {
-                    o.domain = Domain{DomainKind::stretched, true, 2};
+                    o.domain = Domain{DomainKind::stretched, Symmetry::mirror, 2};
                   }),
                   "exponent"));
   EXPECT_TRUE(has(with([](BuildOptions& o) { o.max_evaluations = 0; }), "max_evaluations is 0"));

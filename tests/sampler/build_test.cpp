@@ -201,9 +201,9 @@ TEST(Options, TheDomainCanBeChosen) {
   for (const DomainKind kind :
        {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector, DomainKind::back_vector,
         DomainKind::mirror_vector, DomainKind::normal_vector}) {
-    for (const bool half : {true, false}) {
+    for (const Symmetry symmetry : {Symmetry::mirror, Symmetry::none}) {
       BuildOptions options;
-      options.domain = Domain{kind, half, kind == DomainKind::stretched ? 1.2f : 0.f};
+      options.domain = Domain{kind, symmetry, kind == DomainKind::stretched ? 1.2f : 0.f};
       options.expected_trials = 1.5f;
       const auto s = make_sampler(f, options);
       EXPECT_EQ(s.exact.packed().domain, *options.domain);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,19 +12,19 @@ namespace {
 
 constexpr double elevations_deg[] = {0, 0.01, 15, 45, 70, 85, 89, 89.9, 89.999};
 
-std::vector<Domain> domains(bool half) {
-  return {{DomainKind::projected_disk, half, 0}, {DomainKind::equal_area, half, 0},
-          {DomainKind::half_vector, half, 0},    {DomainKind::back_vector, half, 0},
-          {DomainKind::stretched, half, 1.5f},   {DomainKind::mirror_vector, half, 0},
-          {DomainKind::normal_vector, half, 0},  {DomainKind::stretched, half, 1.1f}};
+std::vector<Domain> domains(Symmetry symmetry) {
+  return {{DomainKind::projected_disk, symmetry, 0}, {DomainKind::equal_area, symmetry, 0},
+          {DomainKind::half_vector, symmetry, 0},    {DomainKind::back_vector, symmetry, 0},
+          {DomainKind::stretched, symmetry, 1.5f},   {DomainKind::mirror_vector, symmetry, 0},
+          {DomainKind::normal_vector, symmetry, 0},  {DomainKind::stretched, symmetry, 1.1f}};
 }
 std::string label(const Domain& d, double theta) {
-  return std::string(name_of(d.kind)) + (d.half ? " half" : "") + " theta_o " + std::to_string(theta);
+  return std::string(name_of(d.kind)) + (d.half() ? " half" : "") + " theta_o " + std::to_string(theta);
 }
 
 TEST(DomainMap, LiftsToUnitDirectionsAboveTheHorizon) {
   Pcg32 u(1);
-  for (const bool half : {false, true}) {
+  for (const Symmetry symmetry : {Symmetry::none, Symmetry::mirror}) {
     for (const Domain& d : domains(half)) {
       for (const double theta : elevations_deg) {
         const auto check = [&](float x, float y) {
@@ -99,7 +99,7 @@ TEST(DomainMap, ProjectedAreaIsTheJacobian) {
 
 // The projected solid angle of the hemisphere is pi, whatever the map.
 TEST(DomainMap, ProjectedAreaIntegratesToPi) {
-  for (const bool half : {false, true}) {
+  for (const Symmetry symmetry : {Symmetry::none, Symmetry::mirror}) {
     for (const Domain& d : domains(half)) {
       for (const double theta : elevations_deg) {
         double sum = 0;
@@ -118,7 +118,7 @@ TEST(DomainMap, ProjectedAreaIntegratesToPi) {
 
 // A specular lobe stays put: the half vector of a point near the centre hardly depends on wo.
 TEST(DomainMap, HalfVectorKeepsLobesInPlace) {
-  const Domain d{DomainKind::half_vector, false, 0};
+  const Domain d{DomainKind::half_vector, Symmetry::none, 0};
   for (const Vec2<float> p : {Vec2<float>{0.02f, 0.01f}, Vec2<float>{-0.03f, 0.02f}}) {
     const Direction wh = lift(d, wo_at(0), p).geometry.wh;
     for (const double theta : {30., 60., 80.}) {
@@ -130,7 +130,7 @@ TEST(DomainMap, HalfVectorKeepsLobesInPlace) {
   for (const double theta : {10., 60., 89.}) {
     const Direction wo = wo_at(theta);
     EXPECT_LT(length(lift(d, wo, {}).geometry.wi - Direction{-wo.x, 0, wo.z}), 1e-5f);
-    EXPECT_LT(length(lift({DomainKind::back_vector, false, 0}, wo, {}).geometry.wi - wo), 1e-5f);
+    EXPECT_LT(length(lift({DomainKind::back_vector, Symmetry::none, 0}, wo, {}).geometry.wi - wo), 1e-5f);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "reflectree/brdf/material.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/verify/chi_square.hpp"
 

@@ -5,10 +5,10 @@
 
 #include "functions.hpp"
 #include "majorant_field.hpp"
-#include "reflectree/brdf/baked_tables.hpp"
+#include "reflectree/brdf/tables/baked_tables.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
 #include "reflectree/verify/attack.hpp"
 #include "reflectree/verify/reciprocity.hpp"
 
@@ -29,7 +29,7 @@ TEST(Asymmetry, SlightlyAndStronglyLopsidedFunctions) {
     const AnyBrdf f = Lopsided{amount};
     const SamplerData data = build(f);
     EXPECT_NEAR(data.report.asymmetry / amount, 0.5, 0.4) << amount;
-    EXPECT_EQ(data.domain.half, data.report.asymmetry < 0.2f);
+    EXPECT_EQ(data.domain.half(), data.report.asymmetry < 0.2f);
     expect_right(make_sampler(f, data), f, {0, 30, 80}, "lopsided " + std::to_string(amount));
   }
 }
@@ -40,7 +40,7 @@ TEST(Asymmetry, AtSomeElevationsAloneTakesTheWholeSquare) {
   const AnyBrdf f = LopsidedAtGrazing{};
   const SamplerData data = build(f);
   EXPECT_LT(data.report.asymmetry, 0.2f);
-  EXPECT_FALSE(data.domain.half);
+  EXPECT_FALSE(data.domain.half());
   EXPECT_LE(data.report.expected_trials, 1.25f);
   expect_right(make_sampler(f, data), f, {0, 60, 88}, "lopsided at grazing");
   BuildOptions folded;
@@ -214,7 +214,7 @@ struct Rpv {
 // Asked for a domain in which the rim becomes an atom of rounding, the albedo was fifteen times too large.
 TEST(Rim, ADomainThatDoesNotFitIsRefused) {
   BuildOptions options;
-  options.domain = Domain{DomainKind::projected_disk, true, 0};
+  options.domain = Domain{DomainKind::projected_disk, Symmetry::mirror, 0};
   EXPECT_THROW(build(AnyBrdf(Rpv{}), options), Error);
   EXPECT_NO_THROW(build(AnyBrdf(Lopsided{0}), options));
 }

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "reflectree/sampler/albedo.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
 #include "reflectree/verify/attack.hpp"
 
@@ -18,7 +18,7 @@ class MajorantField {
     for (const MajorantTree& tree : data.exact) {
       Slab slab;
       for (const std::uint32_t m : tree.mass) slab.sum += m;
-      slab.cells = leaf_cells(tree.nodes, data.domain);
+      slab.cells = leaf_cells(tree.nodes, data.domain.symmetry);
       std::size_t node = 0, leaf = 0;
       add(tree, slab, node, leaf);
       slabs_.push_back(std::move(slab));
@@ -31,7 +31,7 @@ class MajorantField {
     const float theta = linear_mix(float(at[0]), range.lo, range.hi);
     const float cosine = clamp(cos(theta), min_cos_theta_o, 1.f);
     const Direction wo{sqrt((1 - cosine) * (1 + cosine)), 0, cosine};
-    const Vec2<float> p{2 * float(at[1]) - 1, data_.domain.half ? float(at[2]) : 2 * float(at[2]) - 1};
+    const Vec2<float> p{2 * float(at[1]) - 1, data_.domain.half() ? float(at[2]) : 2 * float(at[2]) - 1};
     DomainPoint point = lift(data_.domain, wo, p);
     point.geometry.wi.y *= sign_y, point.geometry.wh.y *= sign_y;
     const float t = data_.target(f_(point.geometry)) * point.projected_area;
@@ -51,7 +51,7 @@ class MajorantField {
     const auto leaf = std::size_t(slab.nodes[std::size_t(i)].leaf);
     const SquareCell& c = slab.cells[leaf];
     const MajorantTree& tree = data_.exact[s];
-    const double share = double(c.x1 - c.x0) * double(c.y1 - c.y0) / (data_.domain.half ? 2 : 4);
+    const double share = double(c.x1 - c.x0) * double(c.y1 - c.y0) / (data_.domain.half() ? 2 : 4);
     const double x = 2 * double((p.x - c.x0) / (c.x1 - c.x0)) - 1,
                  y = 2 * double((p.y - c.y0) / (c.y1 - c.y0)) - 1;
     return double(tree.volume) * tree.mass[leaf] / slab.sum / share * (1 + tree.slope_x[leaf] / 128. * x) *

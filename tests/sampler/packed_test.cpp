@@ -6,7 +6,7 @@
 
 #include "functions.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/leaf.hpp"
+#include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree {
 namespace {
@@ -69,16 +69,16 @@ TEST(Pack, MajorantsFollowFromTheMassAndNeverFallShort) {
   const Domain& domain = made().data.domain;
   for_each_slab(made().packed.exact, made().data.exact.size(), [&](std::size_t s, const PackedSlab& slab) {
     const MajorantTree& tree = made().data.exact[s];
-    const auto cells = leaf_cells(tree.nodes, domain);
+    const auto cells = leaf_cells(tree.nodes, domain.symmetry);
     double sum = 0, volume = 0;
     for (const std::uint32_t m : tree.mass) sum += m;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const PackedLeaf& leaf = made().packed.exact.leaves[slab.first + i];
-      const Vec2<float> first = detail::point_at(leaf, domain.half, 0, 0).p;
-      const Vec2<float> last = detail::point_at(leaf, domain.half, 1, 1).p;
+      const Vec2<float> first = detail::point_at(leaf, domain.half(), 0, 0).p;
+      const Vec2<float> last = detail::point_at(leaf, domain.half(), 1, 1).p;
       EXPECT_EQ(first, (Vec2<float>{cells[i].x0, cells[i].y0}));
       EXPECT_EQ(last, (Vec2<float>{cells[i].x1, cells[i].y1}));
-      const double share = double(last.x - first.x) * double(last.y - first.y) / (domain.half ? 2 : 4);
+      const double share = double(last.x - first.x) * double(last.y - first.y) / (domain.half() ? 2 : 4);
       EXPECT_EQ(double(area_of(leaf)), share);
       const double wanted = double(tree.volume) * tree.mass[i] / sum / share;
       EXPECT_GE(double(leaf.height), wanted * (1 - 1e-7));  // a rounding of float
@@ -94,7 +94,7 @@ TEST(Pack, MajorantsFollowFromTheMassAndNeverFallShort) {
 TEST(Pack, PointsOfALeafAreDrawnFromItsShape) {
   const PackedForest& forest = made().packed.exact;
   const PackedSlab& slab = forest.slabs[forest.slabs.size() / 2];
-  const bool half = made().packed.domain.half;
+  const bool half = made().packed.domain.half();
   Pcg32 u(1);
   for (std::uint32_t i = 0; i < slab.count; i += 3) {
     const PackedLeaf& leaf = forest.leaves[slab.first + i];

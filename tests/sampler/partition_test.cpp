@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/sampler/partition.hpp"
+#include "reflectree/sampler/known/partition.hpp"
 
 #include <gtest/gtest.h>
 

@@ -65,23 +65,23 @@ TEST(SamplerData, RefusesEveryKindOfDamage) {
 TEST(LeafCells, TileTheSquare) {
   const SamplerData& d = good_data();
   const auto tiles = [&](const CanonicalTree& tree, const Domain& domain) {
-    const auto cells = leaf_cells(tree.nodes, domain);
+    const auto cells = leaf_cells(tree.nodes, domain.symmetry);
     ASSERT_EQ(cells.size(), tree.mass.size());
     double area = 0;
     for (const SquareCell& c : cells) area += double(c.x1 - c.x0) * double(c.y1 - c.y0);
-    EXPECT_DOUBLE_EQ(area, domain.half ? 2 : 4);
+    EXPECT_DOUBLE_EQ(area, domain.half() ? 2 : 4);
     Pcg32 u(1);
     for (int i = 0; i < 200; ++i) {
       const float x = 2 * to_unit_float(u()) - 1;
-      const float y = domain.half ? to_unit_float(u()) : 2 * to_unit_float(u()) - 1;
+      const float y = domain.half() ? to_unit_float(u()) : 2 * to_unit_float(u()) - 1;
       int holders = 0;
       for (const SquareCell& c : cells) holders += x >= c.x0 && x < c.x1 && y >= c.y0 && y < c.y1;
       EXPECT_EQ(holders, 1);
     }
   };
-  for (const bool half : {true, false}) {
-    for (const CanonicalTree& tree : d.exact) tiles(tree, {DomainKind::equal_area, half, 0});
-    for (const CanonicalTree& tree : d.one_shot) tiles(tree, {DomainKind::equal_area, half, 0});
+  for (const Symmetry symmetry : {Symmetry::mirror, Symmetry::none}) {
+    for (const CanonicalTree& tree : d.exact) tiles(tree, {DomainKind::equal_area, symmetry, 0});
+    for (const CanonicalTree& tree : d.one_shot) tiles(tree, {DomainKind::equal_area, symmetry, 0});
   }
 }
 

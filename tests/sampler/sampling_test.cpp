@@ -165,7 +165,7 @@ TEST(SampleNTwin, RetryingInsideTheLeafIsSeen) {
                albedo = reference_albedo(target_function(f), known).value;
   const PackedSampler& packed = loose().exact.packed();
   Incidence in;
-  ASSERT_TRUE(find_incidence(packed, known, in));
+  ASSERT_TRUE(find_incidence(packed.albedo, known, in));
   const PackedSlab& slab = packed.exact.slab_at(in.wo.z);
   Pcg32 u(9);
   const double z = z_score(expected, calls, [&] {
@@ -174,7 +174,7 @@ TEST(SampleNTwin, RetryingInsideTheLeafIsSeen) {
         slab, packed.exact.leaves.data() + slab.first, batch, u, [&](const detail::ChosenLeaf& chosen) {
           for (;;) {
             bool coin = false;
-            const auto at = detail::place({chosen.leaf, detail::bits64(u)}, packed.domain.half, u, coin);
+            const auto at = detail::place({chosen.leaf, detail::bits64(u)}, packed.domain.half(), u, coin);
             const DomainPoint p = lift(packed.domain, in.wo, at.p);
             const float t = packed.target(f(p.geometry));
             if (to_unit_float(u()) * at.height >= t * p.projected_area / in.albedo) continue;
@@ -243,7 +243,7 @@ TEST(Monotone, EachCoordinateGrowsWithItsUniform) {
         const auto place = [&](double u1, double u2) {
           const auto drawn = s.sampler.one_shot.sample(wo, u1, u2);
           Direction w = drawn->wi;
-          const float sign = domain.half && w.y < 0 ? -1.f : 1.f;
+          const float sign = domain.half() && w.y < 0 ? -1.f : 1.f;
           w.y *= sign;
           const Vec2<float> p = lower(domain, wo, w);
           return Vec2<float>{p.x, sign * p.y};

@@ -7,7 +7,7 @@
 
 #include "functions.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
 
 namespace reflectree {
 namespace {

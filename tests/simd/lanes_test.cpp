@@ -17,8 +17,8 @@
 #include "reflectree/brdf/models/retro_reflector.hpp"
 #include "reflectree/brdf/models/ward.hpp"
 #include "reflectree/math/random.hpp"
-#include "reflectree/sampler/domain_map.hpp"
-#include "reflectree/sampler/leaf.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
+#include "reflectree/sampler/square/packed_leaf.hpp"
 #include "reflectree/simd/lanes.hpp"
 
 namespace reflectree {
@@ -134,7 +134,7 @@ TEST(Lanes, PointsAreLiftedAsByFloats) {
   for (const DomainKind kind :
        {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector, DomainKind::back_vector,
         DomainKind::stretched, DomainKind::mirror_vector, DomainKind::normal_vector}) {
-    const Domain domain{kind, false, 1.5f};
+    const Domain domain{kind, Symmetry::none, 1.5f};
     int different = 0;
     for (int round = 0; round < 300; ++round) {
       Direction wo[lane_count];

@@ -23,14 +23,14 @@ Suspect drawn_by(const Across& across) {
   const PackedSampler& packed = *s.packed;
   s.propose = [&packed, across](Direction wo, Pcg32& u) -> std::optional<Direction> {
     Incidence in;
-    if (!find_incidence(packed, wo, in)) return std::nullopt;
+    if (!find_incidence(packed.albedo, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed.one_shot.slab_at(in.wo.z);
     const auto chosen =
         detail::choose_leaf(slab, packed.one_shot.leaves.data() + slab.first, detail::bits64(u));
     const Vec2<float> t = across(chosen.leaf, u);
-    const auto at = detail::point_at(chosen.leaf, packed.domain.half, t.x, t.y);
+    const auto at = detail::point_at(chosen.leaf, packed.domain.half(), t.x, t.y);
     const bool coin = u() & 1U;
-    return from_incidence(in, lift(packed.domain, in.wo, at.p, packed.domain.half && coin).geometry.wi);
+    return from_incidence(in, lift(packed.domain, in.wo, at.p, packed.domain.half() && coin).geometry.wi);
   };
   return s;
 }

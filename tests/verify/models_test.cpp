@@ -2,8 +2,8 @@
 // verify() holds for every registered model with its default parameters, at a fifth of its effort.
 #include <gtest/gtest.h>
 
-#include "reflectree/brdf/material.hpp"
-#include "reflectree/brdf/registry.hpp"
+#include "reflectree/brdf/material/material.hpp"
+#include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/verify/verify.hpp"
 #include "threads.hpp"
 

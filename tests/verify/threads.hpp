@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree {
 

@@ -5,33 +5,29 @@
 #include <cmath>
 
 #include "reflectree/draw/disk_image.hpp"
-#include "reflectree/sampler/albedo.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::method {
 
 namespace {
 
-double share_of(const SquareCell& c, const Domain& domain) {
-  return double(c.x1 - c.x0) * double(c.y1 - c.y0) / (domain.half ? 2 : 4);
-}
-
 // Follows the fine tree in preorder; below `depth` leaves are merged into the last coarse one.
 class Cutter {
  public:
   Cutter(const MajorantTree& fine, const Domain& domain, CoarseTree& coarse)
-      : fine_(fine), coarse_(coarse), domain_(domain), cells_(leaf_cells(fine.nodes, domain)) {
-    for (const std::uint32_t m : fine.mass) total_ += m;
+      : fine_(fine), coarse_(coarse), domain_(domain), cells_(leaf_cells(fine.nodes, domain.symmetry)) {
+    total_ = total_mass(fine);
   }
 
   void visit(SquareCell box, int depth) {
     const TreeSplit split = fine_.nodes[node_++];
     const bool open = depth > 0 && split != TreeSplit::leaf;
     if (depth >= 0) coarse_.nodes.push_back(open ? split : TreeSplit::leaf);
-    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_), 0, 0, 0, 0, 0});
+    if (depth >= 0 && !open) coarse_.leaves.push_back({box, share_of(box, domain_.symmetry), 0, 0, 0, 0, 0});
     if (split == TreeSplit::leaf) {
       const double mean =
-          double(fine_.volume) * fine_.mass[leaf_] / total_ / share_of(cells_[leaf_], domain_);
+          double(fine_.volume) * fine_.mass[leaf_] / total_ / share_of(cells_[leaf_], domain_.symmetry);
       const double gx = fine_.slope_x[leaf_] / 128.0, gy = fine_.slope_y[leaf_] / 128.0;
       CoarseLeaf& leaf = coarse_.leaves.back();
       leaf.mass += double(fine_.volume) * fine_.mass[leaf_] / total_;
@@ -45,15 +41,10 @@ class Cutter {
       ++leaf_;
       return;
     }
-    SquareCell lower_half = box, upper_half = box;
-    if (split == TreeSplit::x) {
-      lower_half.x1 = upper_half.x0 = 0.5f * (box.x0 + box.x1);
-    } else {
-      lower_half.y1 = upper_half.y0 = 0.5f * (box.y0 + box.y1);
-    }
+    const SquareHalves halves = halves_of(box, split);
     const int below = open ? depth - 1 : -1;
-    visit(lower_half, below);
-    visit(upper_half, below);
+    visit(halves.lower, below);
+    visit(halves.upper, below);
   }
 
  private:
@@ -78,7 +69,7 @@ CoarseTree cut(const Example& example, int depth) {
   const Domain& domain = example.data.domain;
   CoarseTree coarse;
   Cutter(example.data.exact.at(draw::slab_of(example.data.exact_partition, example.wo)), domain, coarse)
-      .visit({-1, 1, domain.half ? 0.f : -1.f, 1}, depth);
+      .visit(root_cell(domain.symmetry), depth);
   for (CoarseLeaf& leaf : coarse.leaves) {
     constexpr int n = 48;
     for (int k = 0; k < n * n; ++k) {

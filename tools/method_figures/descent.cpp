@@ -34,13 +34,8 @@ class Walk {
     if (split == TreeSplit::leaf) {
       to += tree_.leaves[leaf_++].mass / total_;
     } else {
-      SquareCell lower_half = cell, upper_half = cell;
-      if (split == TreeSplit::x) {
-        lower_half.x1 = upper_half.x0 = 0.5f * (cell.x0 + cell.x1);
-      } else {
-        lower_half.y1 = upper_half.y0 = 0.5f * (cell.y0 + cell.y1);
-      }
-      to = visit(upper_half, depth + 1, visit(lower_half, depth + 1, from));
+      const SquareHalves halves = halves_of(cell, split);
+      to = visit(halves.upper, depth + 1, visit(halves.lower, depth + 1, from));
     }
     nodes[self].to = to;
     return to;
@@ -60,7 +55,7 @@ Figure descent_figure(const Example& example) {
   constexpr double u = 0.42;
   const CoarseTree tree = cut(example, depth);
   Walk walk(tree);
-  const SquareCell root{-1, 1, domain.half ? 0.f : -1.f, 1};
+  const SquareCell root = root_cell(domain.symmetry);
   walk.visit(root, 0, 0);
 
   Figure figure{840, 330, "Choosing a leaf", {}, {}};
@@ -92,8 +87,8 @@ Figure descent_figure(const Example& example) {
     figure.body += label(left + width * k, bottom + 28, std::to_string(k), Anchor::middle, "tick");
   }
 
-  SquarePlace place{516, 40, 300, domain.half};
-  if (domain.half) place.y = top + 24;
+  SquarePlace place{516, 40, 300, domain.half()};
+  if (domain.half()) place.y = top + 24;
   for (const CoarseLeaf& leaf : tree.leaves) {
     figure.body += cell_rectangle(leaf.cell, place, "interval");
   }

@@ -3,7 +3,7 @@
 #include "figures.hpp"
 #include "reflectree/draw/material_figures.hpp"
 #include "reflectree/draw/square_image.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::method {
 
@@ -94,11 +94,11 @@ Figure domains_figure() {
     figure.body += label(x, height - 8, note, Anchor::middle, "note");
     panels.push_back(figure);
   };
-  panel({DomainKind::projected_disk, false, 0}, "*y* = sin² *θ*_i");
-  panel({DomainKind::equal_area, false, 0}, "*y* = 1 − cos *θ*_i");
-  panel({DomainKind::half_vector, false, 0}, "the pole is the mirror direction");
-  panel({DomainKind::back_vector, false, 0}, "the pole is the viewer");
-  panel({DomainKind::stretched, false, 1.5f}, "*a* = 1.5: cells gather at the rim");
+  panel({DomainKind::projected_disk, Symmetry::none, 0}, "*y* = sin² *θ*_i");
+  panel({DomainKind::equal_area, Symmetry::none, 0}, "*y* = 1 − cos *θ*_i");
+  panel({DomainKind::half_vector, Symmetry::none, 0}, "the pole is the mirror direction");
+  panel({DomainKind::back_vector, Symmetry::none, 0}, "the pole is the viewer");
+  panel({DomainKind::stretched, Symmetry::none, 1.5f}, "*a* = 1.5: cells gather at the rim");
   return side_by_side(
       "Domains",
       "A polar square of 16 by 16 even cells and its images on the disk under the five "

@@ -6,7 +6,7 @@
 #include "reflectree/draw/material_figures.hpp"
 #include "reflectree/draw/svg.hpp"
 #include "reflectree/math/random.hpp"
-#include "reflectree/sampler/albedo.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
 #include "reflectree/sampler/sampler.hpp"
 
 namespace reflectree::method {

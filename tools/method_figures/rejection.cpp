@@ -8,7 +8,7 @@
 #include "reflectree/draw/material_figures.hpp"
 #include "reflectree/draw/plot.hpp"
 #include "reflectree/math/random.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::method {
 
@@ -30,7 +30,7 @@ constexpr int coarse_depth = 8;
 Figure rejection_figure(const Example& example) {
   const Domain& domain = example.data.domain;
   const CoarseTree tree = cut(example, coarse_depth);
-  const LeafFinder finder(tree.nodes, domain);
+  const LeafFinder finder(tree.nodes, domain.symmetry);
   Figure figure{840, 372, "Accepted and rejected", {}, {}};
   figure.body = label(16, 26, "A cut through the square: trials under the bounds", Anchor::start, "head");
   figure.description =
@@ -94,7 +94,7 @@ Figure rejection_figure(const Example& example) {
            linear_mix(to_unit_float(random()), leaf.cell.y0, leaf.cell.y1)};
     } while (to_unit_double(random()) * leaf.majorant * highest_shape >= leaf.bound(p));
     const DomainPoint point = lift(domain, example.wo, p);
-    const double side = domain.half && (random() & 1U) ? -1 : 1;
+    const double side = domain.half() && (random() & 1U) ? -1 : 1;
     const double px = cx + radius * double(point.geometry.wi.x),
                  py = cy - side * radius * double(point.geometry.wi.y);
     if (to_unit_double(random()) * leaf.bound(p) < normalised_target(example, p)) {

@@ -11,7 +11,7 @@
 #include "reflectree/draw/disk_image.hpp"
 #include "reflectree/draw/plot.hpp"
 #include "reflectree/draw/svg.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::method {
 
@@ -45,7 +45,7 @@ double mean(const std::vector<double>& values) {
 Figure normalised_bounds_figure() {
   // A slab towards grazing, 25 views, each leaf a point of the grid: what is left is due to theta_o alone.
   const AnyBrdf f = Ggx{0.3f, {0.04f, 0.04f, 0.04f}};
-  const Domain domain{DomainKind::half_vector, true, 0};
+  const Domain domain{DomainKind::half_vector, Symmetry::mirror, 0};
   constexpr int n = 128, views = 25;
   const double from = 70, to = 88;
   std::vector<std::vector<double>> grids;
@@ -95,7 +95,7 @@ Figure albedo_figure() {
     Domain domain;
     const char* css;
   };
-  const Domain disk{DomainKind::equal_area, true, 0}, half{DomainKind::half_vector, true, 0};
+  const Domain disk{DomainKind::equal_area, Symmetry::mirror, 0}, half{DomainKind::half_vector, Symmetry::mirror, 0};
   const std::array<Entry, 4> entries{{{"Lambert, *ρ* = 0.5", Lambert{}, disk, "curve"},
                                       {"Oren–Nayar", OrenNayar{}, disk, "curve-3"},
                                       {"gold-like GGX, *α* = 0.1", Ggx{0.1f}, half, "curve-2"},

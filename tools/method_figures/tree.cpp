@@ -5,8 +5,8 @@
 #include "coarse_tree.hpp"
 #include "reflectree/draw/material_figures.hpp"
 #include "reflectree/draw/square_image.hpp"
-#include "reflectree/sampler/albedo.hpp"
-#include "reflectree/sampler/domain_map.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::method {
 
@@ -15,7 +15,7 @@ using namespace draw;
 Figure tree_growth_figure(const Example& example) {
   const Domain& domain = example.data.domain;
   constexpr double width = 280, radius = 116;
-  const SquarePlace place{38, 56, 2 * radius, domain.half};
+  const SquarePlace place{38, 56, 2 * radius, domain.half()};
   double highest = 0;
   for (const CoarseLeaf& leaf : cut(example, 64).leaves) highest = std::max(highest, leaf.majorant);
   const Axis range{highest * 2e-3, highest, 0, 1, true};
@@ -24,7 +24,7 @@ Figure tree_growth_figure(const Example& example) {
   std::vector<Figure> panels;
   for (const int depth : {3, 5, 64}) {
     const CoarseTree tree = cut(example, depth);
-    const LeafFinder finder(tree.nodes, domain);
+    const LeafFinder finder(tree.nodes, domain.symmetry);
     const auto bound = [&](Vec2<float> p) { return tree.leaves[finder.find(p).index].bound(p); };
     double volume = 0;
     for (const CoarseLeaf& leaf : tree.leaves) volume += leaf.volume();
@@ -41,8 +41,7 @@ Figure tree_growth_figure(const Example& example) {
     const DiskImage image = disk_image(
         [&](std::span<const Direction> wi, std::span<float> out) {
           for (std::size_t i = 0; i < wi.size(); ++i) {
-            const Direction folded{wi[i].x, domain.half ? abs(wi[i].y) : wi[i].y, wi[i].z};
-            const Vec2<float> p = lower(domain, example.wo, folded);
+            const Vec2<float> p = lower(domain, example.wo, fold(domain.symmetry, wi[i]));
             out[i] = float(bound(p)) * albedo / lift(domain, example.wo, p).projected_area;
           }
         },

@@ -6,13 +6,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <string>
+
+#include "reflectree/picture/png.hpp"
 
 namespace reflectree::draw {
-
-struct Rgb8 {
-  std::uint8_t r = 0, g = 0, b = 0;
-  friend constexpr bool operator==(Rgb8, Rgb8) = default;
-};
 
 // t in [0, 1]; clamped; NaN is 0.
 Rgb8 colour(double t);
@@ -22,6 +21,10 @@ Rgb8 diverging_colour(double t);
 using Palette = std::array<Rgb8, 255>;
 const Palette& palette();            // colour(i / 254)
 const Palette& diverging_palette();  // diverging_colour(i / 254)
+
+// An indexed PNG as "data:image/png;base64,...": index 0 is transparent, i + 1 is entry i. Throws Error where
+// size and pixels disagree.
+std::string png_data_uri(int width, int height, std::span<const std::uint8_t> pixels, const Palette& colours);
 
 // Lightness L in OKLab of an sRGB colour, 0 black to 1 white.
 double oklab_lightness(Rgb8 c);

@@ -45,28 +45,6 @@ Axis log_range(const DiskImage& image, double decades = 5);
 std::string disk_raster(const DiskImage& image, const Axis& range, double x, double y, double side,
                         std::string_view css_class = {}, const Palette& colours = palette());
 
-// The leaf of a tree that holds a point of the domain's square, and the leaf's box.
-class LeafFinder {
- public:
-  LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain);
-  struct Leaf {
-    std::size_t index;  // in preorder
-    SquareCell cell;
-  };
-  Leaf find(Vec2<float> p) const;
-
- private:
-  struct Node {
-    TreeSplit split;
-    std::size_t upper_or_leaf;  // index of the upper child; of a leaf, its number
-  };
-  std::vector<Node> nodes_;
-  float y0_;
-};
-
-// The shape q of a leaf at a point of it (sampler_data.hpp); its mean over the leaf is 1.
-float leaf_shape(const CanonicalTree& tree, const LeafFinder::Leaf& leaf, Vec2<float> p);
-
 // The slab of theta_o in a partition over theta_o alone.
 std::size_t slab_of(const Partition& partition, Direction wo);
 

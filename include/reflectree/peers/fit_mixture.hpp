@@ -6,7 +6,7 @@
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/peers/lobe.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree {
 

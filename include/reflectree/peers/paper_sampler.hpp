@@ -17,7 +17,7 @@
 #include "reflectree/math/uniform_bits.hpp"
 #include "reflectree/peers/paper_tree.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree {
 

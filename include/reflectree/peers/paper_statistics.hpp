@@ -6,7 +6,7 @@
 #include <span>
 
 #include "reflectree/peers/paper_tree.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree {
 

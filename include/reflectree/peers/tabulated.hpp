@@ -9,7 +9,7 @@
 
 namespace reflectree {
 
-// The defaults are those of the registry, chosen by bench/study/peers_tuning.
+// The defaults are those of the registry, chosen by bench/studies/peers_tuning.
 struct TabulatedTuning {
   int slices = 32;  // elevations of wo
   int nodes = 64;   // a side, of cdf-table and alias-table

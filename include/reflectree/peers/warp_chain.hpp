@@ -10,7 +10,7 @@
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/peers/bilinear_table.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "reflectree/render/environment.hpp"
-#include "reflectree/render/scattering.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/render/lights/environment.hpp"
+#include "reflectree/render/materials/scattering.hpp"
+#include "reflectree/host.hpp"
 
 namespace reflectree::render {
 

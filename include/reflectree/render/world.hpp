@@ -3,7 +3,7 @@
 // its source, with multiple importance sampling (Veach 1997, 9.2.2).
 #pragma once
 
-#include "reflectree/render/lights.hpp"
+#include "reflectree/render/lights/lights.hpp"
 
 namespace reflectree::render {
 

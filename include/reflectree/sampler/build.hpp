@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "reflectree/brdf/any_brdf.hpp"
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
 
 namespace reflectree {

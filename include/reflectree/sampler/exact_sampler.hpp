@@ -10,9 +10,10 @@
 
 #include "reflectree/brdf/brdf.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
-#include "reflectree/sampler/domain_map.hpp"
-#include "reflectree/sampler/incidence.hpp"
-#include "reflectree/sampler/leaf.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
+#include "reflectree/sampler/known/incidence.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
+#include "reflectree/sampler/square/packed_leaf.hpp"
 #include "reflectree/sampler/statistics.hpp"
 
 namespace reflectree {
@@ -34,7 +35,7 @@ class ExactSampler {
   template <RandomBits U, class Stats = NoStatistics>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u, Stats&& stats = {}) const {
     Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    if (!find_incidence(packed_->albedo, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
     return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
       for (int trial = 0; trial < max_trials; ++trial) {
@@ -53,7 +54,7 @@ class ExactSampler {
   template <RandomBits U, class Stats = NoStatistics>
   std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out, Stats&& stats = {}) const {
     Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return 0;
+    if (!find_incidence(packed_->albedo, wo, in)) return 0;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
     std::size_t filled = 0;
     for (int round = 0; round < max_trials && filled < out.size(); ++round) {
@@ -73,7 +74,7 @@ class ExactSampler {
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample_once(Direction wo, U& u) const {
     Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    if (!find_incidence(packed_->albedo, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
     const Candidate c = propose(packed_->domain, slab, in, u);
     if (!accept(c, in, u, NoStatistics{})) return std::nullopt;
@@ -89,7 +90,7 @@ class ExactSampler {
   // Per projected solid angle: t / a(wo).
   float pdf_disk(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(*packed_, wo, in)) return 0;
+    if (!(wi.z > 0) || !find_incidence(packed_->albedo, wo, in)) return 0;
     const Value value =
         eval(f_, turned_ ? shading_geometry(in.wo, to_incidence(in, wi)) : shading_geometry(wo, wi));
     return packed_->target(value) / in.albedo;
@@ -97,12 +98,12 @@ class ExactSampler {
   // a(wo) of the target, from the table; 0 for no sample.
   float albedo(Direction wo) const {
     Incidence in;
-    return find_incidence(*packed_, wo, in) ? in.albedo : 0.f;
+    return find_incidence(packed_->albedo, wo, in) ? in.albedo : 0.f;
   }
   // sum(V) of the slab of wo: the expected trials, up to the error of the albedo table.
   float expected_trials(Direction wo) const {
     Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return 0;
+    if (!find_incidence(packed_->albedo, wo, in)) return 0;
     return packed_->exact.slab_at(in.wo.z).volume;
   }
 
@@ -125,9 +126,9 @@ class ExactSampler {
   REFLECTREE_INLINE Candidate place(const Domain& domain, const detail::ChosenLeaf& leaf, const Incidence& in,
                                     U& u) const {
     bool coin;
-    const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
+    const detail::PointInLeaf at = detail::place(leaf, domain.half(), u, coin);
     Candidate c;
-    c.point = lift(domain, in.wo, at.p, domain.half && coin);
+    c.point = lift(domain, in.wo, at.p, domain.half() && coin);
     c.majorant = at.height;
     c.value = eval(f_, known_geometry(in, c.point.geometry, turned_));
     c.target = packed_->target(c.value) * c.point.projected_area;

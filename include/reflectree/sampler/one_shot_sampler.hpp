@@ -10,20 +10,14 @@
 
 #include "reflectree/brdf/brdf.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
-#include "reflectree/sampler/domain_map.hpp"
-#include "reflectree/sampler/incidence.hpp"
-#include "reflectree/sampler/leaf.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
+#include "reflectree/sampler/known/incidence.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
+#include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree {
 
 namespace detail {
-
-// What the tree of a slab says about p.
-struct Located {
-  float density;  // per share of the square
-  double u1, u2;  // the uniforms that the monotone descent takes to p
-};
-Located locate(const PackedSampler& packed, const PackedSlab& slab, Vec2<float> p);
 
 REFLECTREE_INLINE bool are_uniforms(double u1, double u2) { return u1 >= 0 && u1 <= 1 && u2 >= 0 && u2 <= 1; }
 
@@ -59,8 +53,8 @@ class OneShotSampler {
         [&](const Domain& domain, const detail::ChosenLeaf& leaf, const Incidence& in)
             REFLECTREE_INLINE_LAMBDA {
               bool coin;
-              const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
-              return proposal(domain, in, at, domain.half && coin);
+              const detail::PointInLeaf at = detail::place(leaf, domain.half(), u, coin);
+              return proposal(domain, in, at, domain.half() && coin);
             });
   }
 
@@ -69,7 +63,7 @@ class OneShotSampler {
   template <RandomBits U>
   std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out) const {
     Incidence in;
-    if (out.empty() || !find_incidence(*packed_, wo, in)) return 0;
+    if (out.empty() || !find_incidence(packed_->albedo, wo, in)) return 0;
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
     std::size_t filled = 0;
     detail::divide(
@@ -82,9 +76,9 @@ class OneShotSampler {
   // outside of [0, 1] are no sample.
   std::optional<DirectionSample<Value>> sample(Direction wo, double u1, double u2) const {
     Incidence in;
-    if (!detail::are_uniforms(u1, u2) || !find_incidence(*packed_, wo, in)) return std::nullopt;
+    if (!detail::are_uniforms(u1, u2) || !find_incidence(packed_->albedo, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
-    const bool half = packed_->domain.half, below = half && u2 < 0.5;
+    const bool half = packed_->domain.half(), below = half && u2 < 0.5;
     if (half) u2 = below ? 1 - 2 * u2 : 2 * u2 - 1;  // continuous across the plane of incidence
     const DescentNode* node = packed_->one_shot.nodes.data() + slab.first_node;
     const PackedLeaf* leaf = packed_->one_shot.leaves.data() + slab.first;
@@ -113,36 +107,42 @@ class OneShotSampler {
   // The uniforms that `sample(wo, u1, u2)` takes to wi, up to rounding; nullopt below the horizon.
   std::optional<Vec2<double>> invert(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(*packed_, wo, in)) return std::nullopt;
-    const bool half = packed_->domain.half;
+    if (!(wi.z > 0) || !find_incidence(packed_->albedo, wo, in)) return std::nullopt;
+    const bool half = packed_->domain.half();
     Direction local = to_incidence(in, wi);
     const bool below = half && local.y < 0;
     if (half) local.y = abs(local.y);
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
-    const detail::Located at = detail::locate(*packed_, slab, lower(packed_->domain, in.wo, local));
+    const detail::Located at = locate(slab, lower(packed_->domain, in.wo, local));
     return Vec2<double>{at.u1, !half ? at.u2 : below ? 0.5 * (1 - at.u2) : 0.5 * (1 + at.u2)};
   }
 
   // Per solid angle, sr^-1; by point location, without evaluating f.
   float pdf(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(*packed_, wo, in)) return 0;
+    if (!(wi.z > 0) || !find_incidence(packed_->albedo, wo, in)) return 0;
     Direction local = to_incidence(in, wi);
-    if (packed_->domain.half) local.y = abs(local.y);
+    local = fold(packed_->domain.symmetry, local);
     const Vec2<float> p = lower(packed_->domain, in.wo, local);
     const DomainPoint point = lift(packed_->domain, in.wo, p);
-    return detail::locate(*packed_, packed_->one_shot.slab_at(in.wo.z), p).density *
+    return locate(packed_->one_shot.slab_at(in.wo.z), p).density *
            point.geometry.cos_theta_i / point.projected_area;
   }
   // Per projected solid angle.
   float pdf_disk(Direction wo, Direction wi) const { return wi.z > 0 ? pdf(wo, wi) / wi.z : 0.f; }
 
  private:
+  detail::Located locate(const PackedSlab& slab, Vec2<float> p) const {
+    const PackedForest& forest = packed_->one_shot;
+    return detail::locate(forest.nodes.data() + slab.first_node, forest.leaves.data() + slab.first, slab.count,
+                          packed_->domain.symmetry, p);
+  }
+
   // make(domain, leaf, incidence), for a leaf chosen by alias table.
   template <class Made, RandomBits U, class Make>
   REFLECTREE_INLINE std::optional<Made> in_chosen_leaf(Direction wo, U& u, const Make& make) const {
     Incidence in;
-    if (!find_incidence(*packed_, wo, in)) return std::nullopt;
+    if (!find_incidence(packed_->albedo, wo, in)) return std::nullopt;
     const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
     const detail::ChosenLeaf leaf =
         detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
@@ -155,8 +155,8 @@ class OneShotSampler {
   REFLECTREE_INLINE DirectionSample<Value> sample_in(const Domain& domain, const detail::ChosenLeaf& leaf,
                                                      const Incidence& in, U& u) const {
     bool coin;
-    const detail::PointInLeaf at = detail::place(leaf, domain.half, u, coin);
-    return finish(domain, in, at, domain.half && coin);
+    const detail::PointInLeaf at = detail::place(leaf, domain.half(), u, coin);
+    return finish(domain, in, at, domain.half() && coin);
   }
 
   REFLECTREE_INLINE DirectionSample<Value> finish(const Domain& domain, const Incidence& in,

@@ -9,26 +9,15 @@
 #include <vector>
 
 #include "reflectree/brdf/target.hpp"
-#include "reflectree/math/direction.hpp"
-#include "reflectree/sampler/domain.hpp"
-#include "reflectree/sampler/partition.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/known/partition.hpp"
+#include "reflectree/sampler/square/domain.hpp"
+#include "reflectree/sampler/square/tree.hpp"
 
 namespace reflectree {
 
 // What the bounds of a slab rest on.
 enum class BoundStatus : std::uint8_t { certified, estimated };
-
-// A node of a tree over the square, in preorder; the lower half comes first.
-enum class TreeSplit : std::uint8_t { leaf = 0, x = 1, y = 2 };
-
-// A tree of one slab. Leaf i is chosen with probability mass_i / sum(mass); across it, for s, t in [-1, 1],
-// runs the product-linear shape q = (1 + gx s)(1 + gy t), gx = slope_x / 128 in (-1, 1), whose mean is 1.
-struct CanonicalTree {
-  std::vector<TreeSplit> nodes;
-  std::vector<std::uint32_t> mass;  // of each leaf, in preorder
-  std::vector<std::int8_t> slope_x, slope_y;
-  friend bool operator==(const CanonicalTree&, const CanonicalTree&) = default;
-};
 
 // Exact mode: leaf i bounds the normalised target, T / albedo <= majorant_i q, where
 // majorant_i = volume * (mass_i / sum(mass)) / area_i and area is the leaf's share of the square. The bound
@@ -43,15 +32,6 @@ struct MajorantTree : CanonicalTree {
 // One-shot mode: the density per share of the square is (mass_i / sum(mass)) / area_i q.
 struct DensityTree : CanonicalTree {
   friend bool operator==(const DensityTree&, const DensityTree&) = default;
-};
-
-// a(wo) = integral of t cos_i over the hemisphere, piecewise linear in cos_theta_o.
-struct AlbedoTable {
-  std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
-  std::vector<float> albedo;
-  // Stated bound on the error of quadrature and interpolation up to 89.9 degrees; beyond, ten times as large.
-  float relative_error = 0;
-  friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
 // Identity of the BRDF: its target at fixed pairs, compared with a tolerance at load.
@@ -80,7 +60,7 @@ struct SamplerData {
   Target target;
   Domain domain;
   Partition exact_partition;
-  std::vector<MajorantTree> exact;  // one a slab
+  std::vector<MajorantTree> exact;  // one per slab
   Partition one_shot_partition;
   std::vector<DensityTree> one_shot;
   AlbedoTable albedo;
@@ -91,12 +71,5 @@ struct SamplerData {
 
 // Throws Error unless every tree is complete, every number finite and in range.
 void validate(const SamplerData& data);
-
-// A leaf's box in square coordinates.
-struct SquareCell {
-  float x0, x1, y0, y1;
-};
-// The cells of all leaves of a tree in preorder; the root is the domain's square.
-std::vector<SquareCell> leaf_cells(const std::vector<TreeSplit>& nodes, const Domain& domain);
 
 }  // namespace reflectree

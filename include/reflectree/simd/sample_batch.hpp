@@ -67,13 +67,13 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
       block.count = 0;
       for (; i < wo.size() && !block.full(); ++i) {
         Incidence in;
-        if (!find_incidence(packed, wo[i], in)) {
+        if (!find_incidence(packed.albedo, wo[i], in)) {
           detail::store_no_sample(values.zero(), out[i]);
           continue;
         }
         const PackedSlab& slab = packed.one_shot.slab_at(in.wo.z);
         const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
-        block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half, u);
+        block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half(), u);
       }
       detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
     }
@@ -87,7 +87,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   assert(points.size() == wo.size() && out.size() == wo.size());
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
-  const bool half = packed.domain.half;
+  const bool half = packed.domain.half();
   detail::TrialBlock block(sampler.evaluates_turned());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   constexpr std::size_t side_by_side = 8;
@@ -105,7 +105,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
         std::size_t n = 0;
         for (; i < wo.size() && n < side_by_side; ++i) {
           Started& s = started[n];
-          if (!detail::are_uniforms(points[i].x, points[i].y) || !find_incidence(packed, wo[i], s.in)) {
+          if (!detail::are_uniforms(points[i].x, points[i].y) || !find_incidence(packed.albedo, wo[i], s.in)) {
             detail::store_no_sample(values.zero(), out[i]);
             continue;
           }
@@ -151,7 +151,7 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
     for (std::size_t i = 0; i < wo.size() || count > 0;) {
       for (; i < wo.size() && count < detail::block_size; ++i) {
         Pending& p = pending[count];
-        if (!find_incidence(packed, wo[i], p.in)) {
+        if (!find_incidence(packed.albedo, wo[i], p.in)) {
           detail::store_no_sample(values.zero(), out[i]);
           continue;
         }
@@ -164,7 +164,7 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
       for (std::size_t k = 0; k < count; ++k) {
         const Pending& p = pending[k];
         const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
-        b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half, u);
+        b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
         b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
       }
       detail::compute_points<detail::AcrossX::place>(domain, b, values);

@@ -2,9 +2,9 @@
 // A block of trials, field by field: chosen one by one, computed in lanes.
 #pragma once
 
-#include "reflectree/sampler/domain_map.hpp"
-#include "reflectree/sampler/incidence.hpp"
-#include "reflectree/sampler/leaf.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
+#include "reflectree/sampler/known/incidence.hpp"
+#include "reflectree/sampler/square/packed_leaf.hpp"
 #include "reflectree/simd/lanes.hpp"
 
 namespace reflectree::detail {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 #include "reflectree/verify/erased.hpp"
 #include "reflectree/verify/result.hpp"
 

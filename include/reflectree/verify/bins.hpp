@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 #include "reflectree/verify/reference.hpp"
 
 namespace reflectree {

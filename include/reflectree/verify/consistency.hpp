@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 #include "reflectree/verify/bins.hpp"
 #include "reflectree/verify/result.hpp"
 

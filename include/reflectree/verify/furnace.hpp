@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 #include "reflectree/verify/reference.hpp"
 #include "reflectree/verify/result.hpp"
 

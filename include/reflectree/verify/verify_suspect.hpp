@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "reflectree/sampler/host.hpp"
+#include "reflectree/host.hpp"
 #include "reflectree/verify/result.hpp"
 #include "reflectree/verify/suspect.hpp"
 

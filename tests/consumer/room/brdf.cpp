@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A material's text and its canonical form.
-#include <reflectree/brdf/material.hpp>
+#include <reflectree/brdf/material/material.hpp>
 
 int main() {
   using namespace reflectree;

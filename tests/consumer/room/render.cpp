@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene and a ray through Embree.
-#include <reflectree/render/embree_scene.hpp>
+#include <reflectree/render/shapes/embree_scene.hpp>
 #include <reflectree/render/scene.hpp>
 
 int main() {

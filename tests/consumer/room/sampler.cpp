@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A sampler of a material chosen at run time.
-#include <reflectree/brdf/material.hpp>
+#include <reflectree/brdf/material/material.hpp>
 #include <reflectree/sampler/sampler.hpp>
 
 int main() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "reflectree/brdf/description.hpp"
+#include "reflectree/brdf/material/description.hpp"
 
 namespace reflectree {
 

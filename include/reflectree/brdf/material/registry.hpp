@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every analytic model, by name. A model enters with one line in registry.cpp.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/material/description.hpp"
+
+namespace reflectree {
+
+// A ModelParameter whose model is erased. Values are Rgb; a float parameter (channels = 1) uses r alone.
+struct ParameterInfo {
+  std::string_view name;
+  int channels = 1;  // 1 or 3
+  float lo = 0, hi = 1;
+  Rgb initial;  // default
+  std::string_view unit, meaning;
+};
+
+struct ModelInfo {
+  std::string_view name;
+  ModelClass model_class;
+  std::string_view summary, source;
+  std::vector<ParameterInfo> parameters;
+  // What is wrong with a combination of values that are each in range, or nullptr.
+  const char* (*fault)(std::span<const Rgb> values);
+  // The model with one value a parameter, in the order of `parameters`.
+  AnyBrdf (*make)(std::span<const Rgb> values);
+};
+
+// In the order in which `list` shows them.
+std::span<const ModelInfo> models();
+// nullptr where there is none of that name.
+const ModelInfo* find_model(std::string_view name);
+// The known model whose name is nearest by edit distance.
+const ModelInfo& nearest_model(std::string_view name);
+
+}  // namespace reflectree

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/brdf/tables/rgl_table.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "reflectree/math/fast_trigonometry.hpp"
+#include "reflectree/math/prefetch.hpp"
+
+namespace reflectree {
+namespace {
+
+// A position on a grid of `size` nodes over [0, 1]: the node below and the fraction towards the next.
+struct GridPosition {
+  int node;
+  float fraction;
+};
+GridPosition locate(float u, int size) {
+  const float x = min(max(0.f, u), 1.f) * float(size - 1);  // in this order a NaN becomes 0
+  const int node = std::min(int(x), size - 2);
+  return {node, x - float(node)};
+}
+
+float interpolate(const std::vector<float>& table, float u) {
+  const GridPosition p = locate(u, int(table.size()));
+  const float* node = table.data() + p.node;
+  return linear_mix(p.fraction, node[0], node[1]);
+}
+
+Rgb clipped(Rgb f) { return {max(f.r, 0.f), max(f.g, 0.f), max(f.b, 0.f)}; }
+
+float elevation_to_u(float theta) { return sqrt(theta * (2.f / pi)); }
+
+// One slice of the warp, scaled to unit mass: cumulative trapezoids along u, then along v (the density is
+// bilinear between nodes).
+struct Slice {
+  std::vector<double> pdf, cdf, row_mass, row_cdf;
+};
+Slice integrate(const float* density, int width, int height) {
+  const auto w = std::size_t(width), h = std::size_t(height);
+  Slice s;
+  s.pdf.resize(w * h), s.cdf.resize(w * h), s.row_mass.resize(h), s.row_cdf.resize(h);
+  for (std::size_t y = 0; y < h; ++y) {
+    for (std::size_t x = 0; x < w; ++x) {
+      const std::size_t i = y * w + x;
+      s.pdf[i] = double(density[i]);
+      s.cdf[i] = x == 0 ? 0 : s.cdf[i - 1] + 0.5 * (s.pdf[i - 1] + s.pdf[i]);
+    }
+    s.row_mass[y] = s.cdf[y * w + w - 1];
+    s.row_cdf[y] = y == 0 ? 0 : s.row_cdf[y - 1] + 0.5 * (s.row_mass[y - 1] + s.row_mass[y]);
+  }
+  const double total = s.row_cdf.back(), scale = total > 0 ? 1 / total : 0;
+  for (auto* table : {&s.pdf, &s.cdf, &s.row_mass, &s.row_cdf}) {
+    for (double& v : *table) v *= scale;
+  }
+  return s;
+}
+
+}  // namespace
+
+RglTable::RglTable(const RglFields& fields)
+    : name(fields.name),
+      theta_o_(fields.theta_o),
+      sigma_(fields.sigma),
+      ndf_(fields.ndf),
+      warp_width_(fields.warp_width),
+      warp_height_(fields.warp_height),
+      colour_width_(fields.colour_width),
+      colour_height_(fields.colour_height) {
+  const std::size_t nodes = theta_o_.size(), pairs = nodes - 1;
+  const auto warp_size = std::size_t(warp_width_) * std::size_t(warp_height_);
+  const auto colour_size = std::size_t(colour_width_) * std::size_t(colour_height_);
+  assert(nodes > 1 && sigma_.size() > 1 && ndf_.size() > 1 && std::min(warp_width_, warp_height_) > 1 &&
+         std::min(colour_width_, colour_height_) > 1);
+  assert(fields.vndf.size() == nodes * warp_size && fields.rgb.size() == nodes * 3 * colour_size);
+  if (!fields.jacobian) {  // D / (4 sigma) = 1
+    sigma_.assign(2, 0.25f);
+    ndf_.assign(2, 1.f);
+  }
+  warp_.resize(pairs * warp_size);
+  rows_.resize(pairs * std::size_t(warp_height_));
+  colour_.resize(pairs * colour_size);
+  for (std::size_t t = 0; t < nodes; ++t) {
+    const Slice slice = integrate(fields.vndf.data() + t * warp_size, warp_width_, warp_height_);
+    const float* rgb = fields.rgb.data() + t * 3 * colour_size;
+    const auto store = [&](std::size_t pair, std::size_t side) {
+      for (std::size_t i = 0; i < warp_size; ++i) {
+        warp_[pair * warp_size + i].cdf[side] = float(slice.cdf[i]);
+        warp_[pair * warp_size + i].pdf[side] = float(slice.pdf[i]);
+      }
+      for (std::size_t y = 0; y < slice.row_mass.size(); ++y) {
+        rows_[pair * slice.row_mass.size() + y].cdf[side] = float(slice.row_cdf[y]);
+        rows_[pair * slice.row_mass.size() + y].mass[side] = float(slice.row_mass[y]);
+      }
+      for (std::size_t i = 0; i < colour_size; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          colour_[pair * colour_size + i].rgb[side][c] = rgb[c * colour_size + i];
+        }
+      }
+    };
+    if (t < pairs) store(t, 0);  // the lower end of the pair that starts here
+    if (t > 0) store(t - 1, 1);  // the upper end of the pair below
+  }
+}
+
+RglTable::Known RglTable::known(const ShadingGeometry<float>& g) const {
+  const float theta_o = detail::polar_angle(sin2_theta(g.wo), g.cos_theta_o);
+  unsigned inner_nodes_passed = 0;  // counted without a branch: random directions would mispredict it
+  for (std::size_t i = 1; i + 1 < theta_o_.size(); ++i)
+    inner_nodes_passed += theta_o >= theta_o_[i] ? 1U : 0U;
+  const std::size_t pair = inner_nodes_passed;
+  const float below = theta_o_[pair], above = theta_o_[pair + 1];
+  const float t1 = min(max(0.f, (theta_o - below) / (above - below)), 1.f);
+  return {pair, t1, 4.f * interpolate(sigma_, elevation_to_u(theta_o))};
+}
+
+Rgb RglTable::operator()(const ShadingGeometry<float>& g) const { return clipped(unclipped(g)); }
+
+Rgb RglTable::unclipped(const ShadingGeometry<float>& g) const {
+  const Known of_wo = known(g);
+  const InWarp at = in_warp(of_wo, g);
+  return unclipped(of_wo, at.u, in_colour(of_wo, at), g.cos_theta_i);
+}
+
+void RglTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
+                    std::span<float> out) const {
+  std::vector<ShadingGeometry<float>> geometry;
+  for (std::size_t i = 0; i < wo.size(); ++i) geometry.push_back(shading_geometry(wo[i], wi[i]));
+  eval(geometry, out);
+}
+
+void RglTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const {
+  constexpr std::size_t block = 64;
+  struct Pair {
+    std::size_t i;
+    Known of_wo;
+    InWarp warp;
+    InColour colour;
+  } pairs[block];
+  const auto both_ends = [](const auto* node, std::size_t nodes) {
+    prefetch(node), prefetch(reinterpret_cast<const char*>(node + nodes) - 1);
+  };
+  const auto warp_stride = std::size_t(warp_width_), colour_stride = std::size_t(colour_width_);
+  for (std::size_t begin = 0; begin < geometry.size(); begin += block) {
+    const std::size_t end = std::min(begin + block, geometry.size());
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const ShadingGeometry<float>& g = geometry[i];
+      if (!(g.cos_theta_o > 0 && g.cos_theta_i > 0)) {
+        out[3 * i] = out[3 * i + 1] = out[3 * i + 2] = 0;
+        continue;
+      }
+      Pair& p = pairs[count];
+      const bool same = count > 0 && geometry[pairs[count - 1].i].wo == g.wo;
+      p.i = i, p.of_wo = same ? pairs[count - 1].of_wo : known(g), p.warp = in_warp(p.of_wo, g);
+      both_ends(p.warp.node, 2), both_ends(p.warp.node + warp_stride, 2), both_ends(p.warp.rows, 2);
+      ++count;
+    }
+    for (Pair& p : std::span(pairs, count)) {
+      p.colour = in_colour(p.of_wo, p.warp);
+      both_ends(p.colour.node, 2), both_ends(p.colour.node + colour_stride, 2);
+    }
+    for (const Pair& p : std::span(pairs, count)) {
+      const Rgb v = clipped(unclipped(p.of_wo, p.warp.u, p.colour, geometry[p.i].cos_theta_i));
+      out[3 * p.i] = v.r, out[3 * p.i + 1] = v.g, out[3 * p.i + 2] = v.b;
+    }
+  }
+}
+
+RglTable::InWarp RglTable::in_warp(const Known& of_wo, const ShadingGeometry<float>& g) const {
+  // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
+  const bool normal = g.wo.x == 0 && g.wo.y == 0;
+  const float ox = select(normal, 1.f, g.wo.x), oy = g.wo.y;
+  const float phi = detail::angle(ox * g.wh.y - oy * g.wh.x, ox * g.wh.x + oy * g.wh.y);
+  const float u = elevation_to_u(detail::polar_angle(sin2_theta(g.wh), g.cos_theta_h));
+  const GridPosition px = locate(u, warp_width_), py = locate(phi * (0.5f / pi) + 0.5f, warp_height_);
+  const std::size_t row = of_wo.pair * std::size_t(warp_height_) + std::size_t(py.node);
+  return {warp_.data() + row * std::size_t(warp_width_) + std::size_t(px.node), rows_.data() + row,
+          px.fraction, py.fraction, u};
+}
+
+// V^-1: the cumulative masses of the bilinear density up to the half vector, along u, then along v.
+RglTable::InColour RglTable::in_colour(const Known& of_wo, const InWarp& at) const {
+  const float t1 = of_wo.t1, t0 = 1 - t1, x1 = at.x, y1 = at.y, y0 = 1 - y1;
+  const WarpNode *lower = at.node, *upper = lower + warp_width_;
+  const auto along = [&](const WarpNode* n) {
+    const float cdf = t0 * n[0].cdf[0] + t1 * n[0].cdf[1];
+    const float p0 = t0 * n[0].pdf[0] + t1 * n[0].pdf[1], p1 = t0 * n[1].pdf[0] + t1 * n[1].pdf[1];
+    return cdf + x1 * (p0 + 0.5f * x1 * (p1 - p0));
+  };
+  const WarpRow* rows = at.rows;
+  const float m0 = t0 * rows[0].mass[0] + t1 * rows[0].mass[1];
+  const float m1 = t0 * rows[1].mass[0] + t1 * rows[1].mass[1];
+  const float mass = y0 * m0 + y1 * m1;
+  const float sx = (y0 * along(lower) + y1 * along(upper)) / select(mass > 0.f, mass, 1.f);
+  const float sy = t0 * rows[0].cdf[0] + t1 * rows[0].cdf[1] + y1 * (m0 + 0.5f * y1 * (m1 - m0));
+
+  const GridPosition qx = locate(sx, colour_width_), qy = locate(sy, colour_height_);
+  const std::size_t row = of_wo.pair * std::size_t(colour_height_) + std::size_t(qy.node);
+  return {colour_.data() + row * std::size_t(colour_width_) + std::size_t(qx.node), qx.fraction, qy.fraction};
+}
+
+// S, bilinear on the warped square.
+Rgb RglTable::unclipped(const Known& of_wo, float u, const InColour& at, float cos_theta_i) const {
+  const auto colour_stride = std::size_t(colour_width_);
+  const ColourNode* n00 = at.node;
+  const float t1 = of_wo.t1, t0 = 1 - t1, a1 = at.x, a0 = 1 - a1, b1 = at.y, b0 = 1 - b1;
+  const float normals = max(interpolate(ndf_, u), 0.f);
+  const float scale = normals / (of_wo.four_sigma * max(1e-6f, cos_theta_i));
+  float out[4] = {0, 0, 0, 0};
+  const auto add = [&out](const ColourNode& n, float w0, float w1) {
+    for (int c = 0; c < 4; ++c) out[c] += w0 * n.rgb[0][c] + w1 * n.rgb[1][c];
+  };
+  add(n00[0], a0 * b0 * t0, a0 * b0 * t1);
+  add(n00[1], a1 * b0 * t0, a1 * b0 * t1);
+  add(n00[colour_stride], a0 * b1 * t0, a0 * b1 * t1);
+  add(n00[colour_stride + 1], a1 * b1 * t0, a1 * b1 * t1);
+  return scale * Rgb{out[0], out[1], out[2]};
+}
+
+BrdfTraits RglTable::traits() const {
+  BrdfTraits traits;
+  traits.isotropic_by_formula = true;
+  traits.name = name;
+  traits.theta_o_knots = theta_o_;
+  // 1 / sigma is piecewise linear in u, in steps of less than a degree.
+  traits.theta_o_factor = [sigma = sigma_](double theta_o) {
+    return 1 / double(interpolate(sigma, elevation_to_u(float(theta_o))));
+  };
+  return traits;
+}
+
+}  // namespace reflectree

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mitsuba 3's XML: what is known is read, everything else is an Error with line and column.
+#include <filesystem>
+
+#include "reflectree/error.hpp"
+#include "reflectree/formats/file.hpp"
+#include "reflectree/formats/file_kind.hpp"
+#include "xml_sensor.hpp"
+#include "xml_shapes.hpp"
+
+namespace reflectree::render {
+
+namespace {
+
+class SceneReader {
+ public:
+  SceneReader(const XmlReader& xml, const Host& host) : xml_(xml), materials_(xml, host) {}
+
+  Scene read(const std::string& path) {
+    scene_.max_depth = -1;  // what Mitsuba does without an integrator
+    xml_.child(xml_.root(), "integrator");
+    for (const Node n : xml_.root().children()) {
+      if (n.type() != pugi::node_element) continue;
+      const std::string_view tag = n.name();
+      if (tag == "integrator")
+        read_integrator(n);
+      else if (tag == "sensor")  // the first one takes the picture, as in Mitsuba
+        scene_.width == 0 ? read_sensor(xml_, n, scene_) : void();
+      else if (tag == "shape")
+        read_shape(xml_, materials_, n, scene_);
+      else if (tag == "emitter")
+        read_emitter(n);
+      else if (tag != "default" && tag != "bsdf" && tag != "texture")  // those are read where they are named
+        xml_.fail(n, "<" + std::string(tag) + "> is not known here", "leave it out");
+    }
+    if (scene_.width == 0) throw Error("no <sensor>", path, "add a perspective sensor");
+    return std::move(scene_);
+  }
+
+ private:
+  void read_integrator(Node n) {
+    const auto method = method_of(XmlReader::type(n));
+    if (!method) xml_.unknown(n);
+    Transport& t = scene_.transport;
+    t.method = *method;
+    if (xml_.flag(n, "hide_emitters", false))
+      xml_.fail(XmlReader::named(n, "hide_emitters"), "emitters cannot be hidden here", "write false");
+    if (t.method == Transport::Method::direct) {
+      xml_.only(n, {"shading_samples", "hide_emitters"});
+      t.split = xml_.integer(n, "shading_samples", 0);
+      return;
+    }
+    if (t.method == Transport::Method::photons) {
+      xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather",
+                    "hide_emitters"});
+      t.photons.count = xml_.integer(n, "photon_count", 0);
+      t.photons.radius = float(xml_.property(n, "radius", 0));
+      t.photons.shrink = float(xml_.property(n, "alpha", 2 / 3.));
+      t.photons.gather = xml_.flag(n, "final_gather", true);
+    } else if (t.method == Transport::Method::path) {
+      xml_.only(n, {"max_depth", "rr_depth", "hide_emitters"});
+    } else {
+      xml_.only(n, {"max_depth", "rr_depth", "split", "hide_emitters"});
+    }
+    t.split = xml_.integer(n, "split", 0);
+    scene_.max_depth = xml_.integer(n, "max_depth", -1);
+    scene_.rr_depth = xml_.integer(n, "rr_depth", 5);
+    if (scene_.rr_depth < 1) xml_.fail(n, "rr_depth is not positive", "write 1 or more");
+  }
+
+  void set_environment(Node n, Environment e) {
+    if (scene_.environment) xml_.fail(n, "a second environment", "keep one of the two");
+    scene_.environment = std::move(e);
+  }
+
+  // A light is placed by its transform or by this, not by both.
+  void either(Node n, const char* name) const {
+    if (XmlReader::named(n, name) && XmlReader::named(n, "to_world"))
+      xml_.fail(n, "both '" + std::string(name) + "' and 'to_world'", "keep one of the two");
+  }
+
+  void read_emitter(Node n) {
+    const std::string type = XmlReader::type(n);
+    const Rgb white{1, 1, 1};
+    const Matrix m = xml_.transform(XmlReader::named(n, "to_world"));
+    if (type == "area" && n.attribute("id")) return;  // reached through references
+    if (type == "constant") {
+      xml_.only(n, {"radiance"});
+      set_environment(n, Environment(xml_.colour(n, "radiance", white, ColourOf::light)));
+    } else if (type == "envmap") {
+      xml_.only(n, {"filename", "scale", "to_world"});
+      const LocalFrame<float> frame = xml_.rotation(n, "to_world");
+      const std::string file = xml_.file(n);
+      const float scale = float(xml_.property(n, "scale", 1));
+      if (!(scale >= 0)) xml_.fail(n, "the sky's scale is negative", "write a number from 0 on");
+      xml_.placed(n, [&] { set_environment(n, {rgb_of(read_image(file), file), frame, scale, file}); });
+    } else if (type == "point") {
+      xml_.only(n, {"position", "intensity", "to_world"});
+      either(n, "position");
+      const auto place = apply_double(m, xml_.point(n, "position", {}), 1);
+      if (!within_reach(place)) xml_.fail(n, "the light is beyond 1e15", "use larger units");
+      scene_.point_lights.push_back({to_float(place), xml_.colour(n, "intensity", white, ColourOf::light)});
+    } else if (type == "directional") {
+      xml_.only(n, {"direction", "irradiance", "to_world"});
+      either(n, "direction");
+      const Direction d = apply(m, xml_.point(n, "direction", {0, 0, 1}), 0);
+      if (!(length(d) > 0)) xml_.fail(n, "the light goes nowhere", "give it a direction");
+      scene_.directional_lights.push_back(
+          {normalize(d), xml_.colour(n, "irradiance", white, ColourOf::light)});
+    } else {
+      xml_.unknown(n);
+    }
+  }
+
+  const XmlReader& xml_;
+  MaterialReader materials_;
+  Scene scene_;
+};
+
+}  // namespace
+
+std::optional<Transport::Method> method_of(std::string_view name) {
+  using Method = Transport::Method;
+  if (name == "path") return Method::path;
+  if (name == "direct") return Method::direct;
+  if (name == "recursive") return Method::recursive;
+  if (name == "photons") return Method::photons;
+  return std::nullopt;
+}
+
+std::optional<PointSet::Kind> points_of(std::string_view name) {
+  using Kind = PointSet::Kind;
+  if (name == "independent") return Kind::independent;
+  if (name == "stratified") return Kind::stratified;
+  if (name == "sobol" || name == "ldsampler") return Kind::sobol;
+  return std::nullopt;
+}
+
+Scene parse_scene(std::string_view xml, const std::string& path, const SceneOptions& options,
+                  const Host& host) {
+  const XmlReader reader(xml, path, options);
+  Scene scene = SceneReader(reader, host).read(path);
+  scene.identity = reader.fingerprint();
+  return scene;
+}
+
+Scene load_scene(const std::string& path, const SceneOptions& options, const Host& host) {
+  const Bytes bytes = read_file(path, std::uint64_t(1) << 26U);
+  if (!recognise_file(bytes).may_be_scene) refuse_recognised(bytes, path, "name a Mitsuba 3 scene");
+  return parse_scene(std::string(bytes.begin(), bytes.end()), path, options, host);
+}
+
+}  // namespace reflectree::render

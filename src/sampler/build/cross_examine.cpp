@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cross_examine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reflectree/math/random.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/square/packed_leaf.hpp"
+
+namespace reflectree::detail {
+
+namespace {
+
+constexpr float surprising = 2;  // times the bound
+constexpr std::size_t most_surprises = 8;
+constexpr float theta_max = 1.5707887f;
+
+const Slab& slab_of(const std::vector<Slab>& slabs, float theta) {
+  const auto upper = std::upper_bound(slabs.begin(), slabs.end(), theta,
+                                      [](float t, const Slab& slab) { return t < slab.theta_lo; });
+  return upper == slabs.begin() ? slabs.front() : *(upper - 1);
+}
+
+const Leaf& leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain) {
+  std::uint32_t i = 0;
+  while (slab.nodes[i].split != TreeSplit::leaf) {
+    const std::uint32_t child = slab.nodes[i].child;
+    const Box upper = box_of(slab.nodes[child + 1].leaf.cell, domain);
+    const bool up = slab.nodes[i].split == TreeSplit::x ? p.x >= upper.x0 : p.y >= upper.y0;
+    i = child + std::uint32_t(up);
+  }
+  return slab.nodes[i].leaf;
+}
+
+struct Mean {
+  double sum = 0, square = 0;
+  std::size_t count = 0;
+  void add(double x) { sum += x, square += x * x, ++count; }
+  double mean() const { return count ? sum / double(count) : 0; }
+  double error() const {
+    const auto n = double(count);
+    return count > 1 ? std::sqrt(std::max(square / n - mean() * mean(), 0.) / (n - 1)) : 0;
+  }
+};
+
+// Two of three probes uniform over the hemisphere, the third over the square.
+std::vector<FieldPoint> probes(const Domain& domain, std::size_t count, Pcg32& u) {
+  std::vector<FieldPoint> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float theta = theta_max * to_unit_float(u());
+    const float c = clamp(cos(theta), min_cos_theta_o, 1.f), a = to_unit_float(u()), b = to_unit_float(u());
+    if (i % 3 == 0) {
+      points.push_back({c, square_point(domain.symmetry, a, b)});
+      continue;
+    }
+    const float z = max(b, 1e-4f), r = sqrt(1 - z * z), phi = (domain.half() ? pi : 2 * pi) * a;
+    points.push_back({c, lower(domain, wo_from_cosine(c), {r * cos(phi), r * sin(phi), z})});
+  }
+  return points;
+}
+
+// Points drawn from the bounds of a slab, each for a theta_o of its own, and the bound there.
+void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain, Pcg32& u,
+                      std::vector<FieldPoint>& points, std::vector<float>& bounds) {
+  const std::vector<std::uint32_t> order = leaves_in_order(slab);
+  std::vector<double> upper;
+  double sum = 0;
+  for (const std::uint32_t i : order) upper.push_back(sum += double(slab.nodes[i].leaf.cost));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double at = sum * to_unit_double(u());
+    const auto found = std::min(std::upper_bound(upper.begin(), upper.end(), at), upper.end() - 1);
+    const Leaf& leaf = slab.nodes[order[std::size_t(found - upper.begin())]].leaf;
+    const Box box = box_of(leaf.cell, domain);
+    const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
+                        box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
+    const float theta = linear_mix(to_unit_float(u()), slab.theta_lo, slab.theta_hi);
+    points.push_back({clamp(cos(theta), min_cos_theta_o, 1.f), p});
+    bounds.push_back(leaf.height * shape(leaf, box, p));
+  }
+}
+
+}  // namespace
+
+CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& survey,
+                               const FieldPoint& brightest, std::uint64_t seed) {
+  constexpr std::size_t probe_count = 3U << 16U, draw_count = 1U << 16U;
+  const Domain& domain = survey.field.domain;
+  Pcg32 u(seed, 23);
+  CrossExamination result;
+
+  std::vector<FieldPoint> points = probes(domain, probe_count, u);
+  points.push_back(brightest);
+  std::vector<FieldValue> values(points.size());
+  survey.eval(points, values);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (survey.at_jump(points[i].cos_theta_o)) continue;
+    const float a = albedo_at(survey.albedo, points[i].cos_theta_o);
+    const float theta = acos(points[i].cos_theta_o);
+    if (!(values[i].upper > 0)) continue;
+    const Leaf& leaf = leaf_at(slab_of(slabs, theta), points[i].p, domain);
+    const float bound = leaf.height * shape(leaf, box_of(leaf.cell, domain), points[i].p);
+    const float ratio = a > 0 ? values[i].upper / (a * bound) : std::numeric_limits<float>::infinity();
+    if (!(ratio > surprising)) continue;
+    const Direction wo = wo_from_cosine(points[i].cos_theta_o);
+    result.surprises.push_back({points[i].cos_theta_o, lift(domain, wo, points[i].p).geometry.wi, ratio});
+  }
+  std::stable_sort(result.surprises.begin(), result.surprises.end(),
+                   [](const Surprise& a, const Surprise& b) { return a.ratio > b.ratio; });
+  if (result.surprises.size() > most_surprises) result.surprises.resize(most_surprises);
+
+  // A slab is drawn from as often as a viewer is in it; its mean is weighted by what it was drawn for.
+  points.clear();
+  std::vector<float> bounds;
+  std::vector<std::size_t> first;
+  for (const Slab& slab : slabs) {
+    first.push_back(points.size());
+    const auto share = double(slab.theta_hi - slab.theta_lo) / double(theta_max);
+    draw_from_bounds(slab, 16 + std::size_t(share * double(draw_count)), domain, u, points, bounds);
+  }
+  first.push_back(points.size());
+  values.resize(points.size());
+  survey.eval(points, values);
+  double weights = 0, error2 = 0;
+  result.by_bounds = result.accepted = 0;
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    const auto volume = double(total(slabs[s], &Leaf::cost));
+    Mean once, accepted;
+    for (std::size_t i = first[s]; i < first[s + 1]; ++i) {
+      const float a = albedo_at(survey.albedo, points[i].cos_theta_o);
+      if (!(a > 0) || survey.at_jump(points[i].cos_theta_o)) continue;
+      // Of mirror images on half a square one is drawn: their mean is what is accepted.
+      const double ratio = double(values[i].mean) / (double(a) * double(bounds[i]));
+      once.add(volume * ratio), accepted.add(volume * std::min(ratio, 1.));
+    }
+    if (once.count == 0) continue;
+    const auto w = double(slabs[s].theta_hi - slabs[s].theta_lo);
+    weights += w;
+    result.by_bounds += w * once.mean(), result.accepted += w * accepted.mean();
+    error2 += w * w * once.error() * once.error();
+  }
+  if (weights > 0) {
+    result.by_bounds /= weights, result.accepted /= weights;
+    result.by_bounds_error = std::sqrt(error2) / weights;
+  } else {
+    result.by_bounds = result.accepted = 1;
+  }
+  return result;
+}
+
+}  // namespace reflectree::detail

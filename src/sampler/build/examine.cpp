@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "examine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "reflectree/error.hpp"
+#include "reflectree/math/frame.hpp"
+#include "reflectree/math/random.hpp"
+#include "refuse.hpp"
+
+namespace reflectree::detail {
+
+namespace {
+
+constexpr std::size_t pairs = 4096;
+constexpr float symmetric_enough = 1e-4f;  // mirror images are one function, up to rounding
+constexpr float isotropic_enough = 3e-4f;  // relative, of every pair, beyond what rounding explains
+
+Direction mirrored(Direction w) { return {w.x, -w.y, w.z}; }
+Direction turned(Direction w, float c, float s) { return {c * w.x - s * w.y, s * w.x + c * w.y, w.z}; }
+
+// Pairs in the plane of incidence of wo, spread by the maps of two domains so that lobes are met.
+void make_pairs(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Direction>& wi) {
+  Pcg32 u(seed, 11);
+  while (wo.size() < pairs) {
+    const float cos_theta_o = max(to_unit_float(u()), 1e-3f);
+    const float shrink = wo.size() % 4 < 2 ? 1.f : to_unit_float(u());
+    const Vec2<float> p{shrink * (2 * to_unit_float(u()) - 1), shrink * (2 * to_unit_float(u()) - 1)};
+    const Domain domain{wo.size() % 2 ? DomainKind::half_vector : DomainKind::equal_area, Symmetry::none, 0};
+    const Direction known = wo_from_cosine(cos_theta_o);
+    const DomainPoint q = lift(domain, known, p);
+    if (!(q.geometry.wi.z > 1e-3f)) continue;
+    wo.push_back(known), wi.push_back(q.geometry.wi);
+  }
+}
+
+// Beside the lobes that f tells of, and the ridges.
+void add_lobe_pairs(const AnyBrdf& f, const std::vector<Ridge>& ridges, std::vector<Direction>& wo,
+                    std::vector<Direction>& wi) {
+  const auto add = [&](Direction known, const SharpLobe& lobe) {
+    const LocalFrame<float> frame = frame_from_normal(lobe.centre);
+    for (const float r : {0.f, 0.3f, 0.6f}) {
+      for (const Direction& along : {frame.s, frame.t}) {
+        const Direction w = normalize(lobe.centre + r * lobe.width * along);
+        if (w.z > 1e-3f) wo.push_back(known), wi.push_back(w);
+      }
+    }
+  };
+  for (int k = 0; k < 16; ++k) {
+    const float theta = 0.05f + 0.1f * float(k);
+    const Direction known = wo_from_cosine(max(cos(theta), 1e-3f));
+    if (f.traits().sharp) {
+      for (const SharpLobe& lobe : f.traits().sharp(known)) add(known, lobe);
+    }
+    for (const Ridge& ridge : ridges) {
+      if (const auto lobe = ridge.at(theta)) add(known, *lobe);
+    }
+  }
+}
+
+using Values = std::vector<float>;
+Values values_at(const AnyBrdf& f, const std::vector<Direction>& wo, const std::vector<Direction>& wi) {
+  Values values(wo.size() * std::size_t(f.channels()));
+  f.eval(wo, wi, values);
+  return values;
+}
+
+void refuse_bad_values(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
+                       const std::vector<Direction>& wi) {
+  const auto channels = std::size_t(f.channels());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (is_good(values[k])) continue;
+    const std::size_t i = k / channels;
+    refuse_values(std::span(values).subspan(i * channels, channels), f.traits().name, wo[i], wi[i]);
+  }
+}
+
+// What f takes on beside a pair, where rounding moves directions: lowest and highest, per channel.
+struct Range {
+  float lo, hi;
+};
+std::vector<Range> ranges_beside(const AnyBrdf& f, Direction wo, Direction wi, Pcg32& u) {
+  constexpr std::size_t neighbours = 24;
+  constexpr float far = 4e-7f;
+  const auto moved = [&u](Direction w) {
+    const auto shift = [&u] { return far * (2 * to_unit_float(u()) - 1); };
+    return normalize(Direction{w.x + shift(), w.y + shift(), max(w.z + shift(), 1e-7f)});
+  };
+  std::vector<Direction> o{wo}, i{wi};
+  while (o.size() < neighbours) o.push_back(moved(wo)), i.push_back(moved(wi));
+  const auto channels = std::size_t(f.channels());
+  const Values values = values_at(f, o, i);
+  std::vector<Range> ranges(channels, {1e38f, -1e38f});
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    Range& r = ranges[k % channels];
+    r = {min(r.lo, values[k]), max(r.hi, values[k])};
+  }
+  return ranges;
+}
+
+// Refuses what changes when both directions turn about the normal, by more than rounding explains: the pairs
+// that change most are looked at again among their neighbours.
+void refuse_anisotropy(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
+                       const std::vector<Direction>& wi, std::uint64_t seed) {
+  const std::size_t looked_at = std::min<std::size_t>(64, wo.size());
+  const auto channels = std::size_t(f.channels());
+  Pcg32 u(seed, 12);
+  std::vector<Direction> other_wo = wo, other_wi = wi;
+  std::vector<float> angle(wo.size());
+  for (std::size_t k = 0; k < wo.size(); ++k) {
+    angle[k] = 6.2831853f * to_unit_float(u());
+    const float c = cos(angle[k]), s = sin(angle[k]);
+    other_wo[k] = turned(wo[k], c, s), other_wi[k] = turned(wi[k], c, s);
+  }
+  const Values other = values_at(f, other_wo, other_wi);
+  refuse_bad_values(f, other, other_wo, other_wi);
+  double mean = 0;
+  for (const float v : values) mean += double(v) / double(values.size());
+  const auto floor = float(1e-6 * mean);
+  std::vector<float> change(wo.size(), 0);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const float c = abs(values[k] - other[k]) / (max(values[k], other[k]) + floor + 1e-38f);
+    change[k / channels] = max(change[k / channels], c);
+  }
+  std::vector<std::size_t> order(wo.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::partial_sort(
+      order.begin(), order.begin() + std::ptrdiff_t(looked_at), order.end(),
+      [&](std::size_t a, std::size_t b) { return change[a] != change[b] ? change[a] > change[b] : a < b; });
+  Pcg32 jitter(seed, 14);
+  for (std::size_t n = 0; n < looked_at && change[order[n]] > isotropic_enough; ++n) {
+    const std::size_t k = order[n];
+    const auto here = ranges_beside(f, wo[k], wi[k], jitter),
+               there = ranges_beside(f, other_wo[k], other_wi[k], jitter);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const float gap = max(here[c].lo - there[c].hi, there[c].lo - here[c].hi);
+      if (gap <= isotropic_enough * max(here[c].hi, there[c].hi) + floor) continue;
+      char what[160];
+      std::snprintf(
+          what, sizeof what,
+          "the BRDF changes when both directions turn by %.4g degrees about the normal, from %.6g to %.6g: "
+          "it is anisotropic",
+          double(angle[k]) * 180 / pi_v<double>, double(values[k * channels + c]),
+          double(other[k * channels + c]));
+      throw Error(what, f.traits().name + " at " + describe(wo[k], wi[k]),
+                  "use an isotropic function; anisotropic samplers are not built yet");
+    }
+  }
+}
+
+// Sum of |a - b| over half the sum of both.
+float difference(const Values& a, const Values& b) {
+  double miss = 0, sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    miss += double(abs(a[i] - b[i])), sum += 0.5 * (double(a[i]) + double(b[i]));
+  }
+  return sum > 0 ? float(miss / sum) : 0.f;
+}
+
+// The largest channel that a climb from the brightest pair finds, where that is suspiciously dark: the pairs
+// may have met nothing but the tail of a lobe.
+float summit(const AnyBrdf& f, float largest, Direction wo, Direction wi) {
+  if (largest == 0 || largest > 1e-6f) return largest;
+  const Ridge ridge = follow_ridge(f, {TargetKind::maximum, 0, 1e30f}, acos(min(wo.z, 1.f)), wi);
+  std::vector<Direction> o, i;
+  for (std::size_t k = 0; k < ridge.lobe.size(); ++k) {
+    o.push_back(wo_from_cosine(cos(ridge.theta_o[k]))), i.push_back(ridge.lobe[k].centre);
+  }
+  const Values values = values_at(f, o, i);
+  return max(largest, *std::max_element(values.begin(), values.end()));
+}
+
+// The power of two that brings values near 1 whose squares would leave the range of float.
+float scale_for(const AnyBrdf& f, float largest) {
+  if (largest == 0 || (largest > 1e-15f && largest < 1e15f)) return 1;
+  if (largest < 1e-35f) {
+    char what[96];
+    std::snprintf(what, sizeof what, "the BRDF returned no more than %.3g, where floats have few digits left",
+                  double(largest));
+    throw Error(what, f.traits().name, "multiply it by a constant and divide the weights by it");
+  }
+  return std::ldexp(1.f, -std::ilogb(largest));
+}
+
+}  // namespace
+
+Examination examine(const AnyBrdf& f, const BuildOptions& options, const std::vector<Ridge>& ridges) {
+  if (!f.traits().isotropic) {
+    throw Error("the material is anisotropic: it depends on the azimuth of wo", f.traits().name,
+                "use an isotropic material; anisotropic samplers are not built yet");
+  }
+  std::vector<Direction> wo, wi;
+  make_pairs(options.seed, wo, wi);
+  add_lobe_pairs(f, ridges, wo, wi);
+  const Values first = values_at(f, wo, wi);
+  refuse_bad_values(f, first, wo, wi);
+  const Values second = values_at(f, wo, wi);
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] == second[k]) continue;
+    const std::size_t i = k / std::size_t(f.channels());
+    throw Error(
+        "two calls with the same directions gave different values: a stochastic function has no bounds",
+        f.traits().name + " at " + describe(wo[i], wi[i]), "average it into a deterministic function");
+  }
+  refuse_anisotropy(f, first, wo, wi, options.seed);
+  Examination seen;
+  seen.target = options.target;
+  const auto largest = std::max_element(first.begin(), first.end());
+  const auto brightest = std::size_t(largest - first.begin()) / std::size_t(f.channels());
+  seen.brightest_wo = wo[brightest], seen.brightest_wi = wi[brightest];
+  if (options.target.scale == 1)
+    seen.target.scale = scale_for(f, summit(f, *largest, wo[brightest], wi[brightest]));
+  std::vector<Direction> other_wi = wi;
+  for (Direction& w : other_wi) w = mirrored(w);
+  const Values other = values_at(f, wo, other_wi);
+  refuse_bad_values(f, other, wo, other_wi);
+  seen.asymmetry = difference(first, other);
+  seen.mirror_symmetric = seen.asymmetry <= symmetric_enough;
+  return seen;
+}
+
+}  // namespace reflectree::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The builder's view of a BRDF: T(cos_theta_o, x, y) over the square of a domain, evaluated in batches, and
+// what all steps of a build share.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/target.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
+#include "reflectree/host.hpp"
+#include "reflectree/sampler/sampler_data.hpp"
+#include "ridge.hpp"
+
+namespace reflectree::detail {
+
+struct FieldPoint {
+  float cos_theta_o;
+  Vec2<float> p;
+};
+
+// With half domains T differs between wi and its mirror image where f is not quite mirror-symmetric:
+// exact trees bound `upper`, albedo and densities use `mean`.
+struct FieldValue {
+  float mean, upper;
+};
+
+inline Direction wo_from_cosine(float cos_theta_o) {
+  return {sqrt(max((1 - cos_theta_o) * (1 + cos_theta_o), 0.f)), 0, cos_theta_o};
+}
+
+// A place of the square where f may hide a needle that a grid steps over, and how small it is there, in
+// coordinates of the square.
+struct Landmark {
+  Vec2<float> p;
+  Vec2<float> size;
+};
+
+struct Field {
+  AnyBrdf f;
+  Target target;
+  Domain domain;
+  bool both_sides = false;         // evaluate the mirror image too
+  std::vector<Ridge> ridges = {};  // sharp lobes that f did not tell of and that were met all the same
+
+  // Throws Error, naming the directions, for a value that is negative, NaN or infinite.
+  void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const;
+  // The mirror direction of wo, wo itself, and the sharp lobes that f tells of; the same number, in the same
+  // order, for every wo for which f tells of as many.
+  std::vector<Landmark> landmarks(float cos_theta_o) const;
+};
+
+// What a build may cost, and has.
+struct Effort {
+  std::uint64_t evaluations = 0, limit = ~std::uint64_t(0);
+  bool spent() const { return evaluations >= limit; }
+};
+
+// All points of a round at once, through the host's threads where f allows.
+void eval_in_parallel(const Field& field, const Host& host, Effort& effort,
+                      std::span<const FieldPoint> points, std::span<FieldValue> out);
+
+// What is known about a function once its domain is chosen, and by what means it is asked.
+struct Survey {
+  const Field& field;
+  const AlbedoTable& albedo;
+  const Host& host;
+  Effort& effort;
+  const std::vector<float>* jumps = nullptr;  // of theta_o
+  std::vector<FieldPoint>* towers = nullptr;  // where the attack met values far above a bound are noted here
+
+  // Between the two sides of a jump, 1e-6 wide, the albedo is a ramp that belongs to neither.
+  bool at_jump(float cos_theta_o) const;
+  void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
+    eval_in_parallel(field, host, effort, points, out);
+  }
+};
+
+}  // namespace reflectree::detail

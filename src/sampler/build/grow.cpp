@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reflectree::detail {
+
+namespace {
+
+struct Task {
+  std::uint32_t slab, node;
+};
+
+struct SlabState {
+  bool active = true;
+  std::size_t leaves = 1;
+  std::size_t next_check = 16;
+};
+
+void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicCell& cell,
+                const Domain& domain) {
+  const Box box = box_of(cell, domain);
+  for (int k = 0; k < theta_nodes; ++k) {
+    for (int j = 0; j < grid_size; ++j) {
+      for (int i = 0; i < grid_size; ++i) {
+        points.push_back({slab.cos_theta_o[std::size_t(k)],
+                          {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
+                           box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])}});
+      }
+    }
+  }
+}
+
+// A point inside a leaf beside its grid.
+struct Visit {
+  std::size_t task;
+  Slab::Mark at;
+};
+
+// A lobe about the pole may be narrower than the grid of a leaf that touches it: look at every octave of the
+// radius below the leaf.
+void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab, const Box& box) {
+  constexpr int octaves = 9;
+  const bool above = box.y0 == 0, below = box.y0 + box.height == 0;
+  if (!above && !below) return;
+  for (std::size_t k = 0; k < theta_nodes; ++k) {
+    for (int octave = 1; octave <= octaves; ++octave) {
+      for (const float node : lobatto_nodes) {
+        const float y = std::ldexp(box.height, -octave);
+        const Vec2<float> p{box.x0 + 0.5f * box.width * (1 + node), above ? y : -y};
+        const float theta = linear_mix(0.5f * float(k), slab.theta_lo, slab.theta_hi);
+        visits.push_back({task, {{slab.cos_theta_o[k], p}, slab.albedo[k], theta, 0}});
+      }
+    }
+  }
+}
+
+// Evaluates the tasks in one batch and analyses each leaf.
+void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Survey& survey,
+              const GrowthRules& rules) {
+  const Field& field = survey.field;
+  std::vector<FieldPoint> points;
+  points.reserve(tasks.size() * grid_points);
+  for (const Task& task : tasks) {
+    const Slab& slab = slabs[task.slab];
+    add_points(points, slab, slab.nodes[task.node].leaf.cell, field.domain);
+  }
+  std::vector<Visit> visits;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const Slab& slab = slabs[tasks[t].slab];
+    const Box box = box_of(slab.nodes[tasks[t].node].leaf.cell, field.domain);
+    for (const Slab::Mark& landmark : slab.marks) {
+      if (!contains(box, landmark.point.p)) continue;
+      visits.push_back({t, landmark});
+    }
+    add_octaves(visits, t, slab, box);
+  }
+  for (const Visit& visit : visits) points.push_back(visit.at.point);
+  std::vector<FieldValue> values(points.size());
+  survey.eval(points, values);
+  const auto normalised = [&](const Slab& slab, std::size_t theta, std::size_t i) {
+    const float a = slab.albedo[theta];
+    return a > 0 ? FieldValue{values[i].mean / a, values[i].upper / a} : FieldValue{0, 0};
+  };
+  for (std::size_t v = 0; v < visits.size(); ++v) {
+    const Slab::Mark& landmark = visits[v].at;
+    const Task& task = tasks[visits[v].task];
+    const std::size_t i = tasks.size() * grid_points + v;
+    Leaf& leaf = slabs[task.slab].nodes[task.node].leaf;
+    const Box box = box_of(leaf.cell, field.domain);
+    leaf.crossed = leaf.crossed || landmark.travel > max(box.width, box.height);
+    if (landmark.albedo > 0) leaf.note(values[i].upper / landmark.albedo, landmark.theta, points[i].p);
+  }
+  survey.host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      Slab& slab = slabs[tasks[t].slab];
+      Leaf& leaf = slab.nodes[tasks[t].node].leaf;
+      Grid grid;
+      for (std::size_t i = 0; i < grid.size(); ++i) {
+        const std::size_t theta = i / (grid_size * grid_size);
+        grid[i] = normalised(slab, theta, t * grid_points + i);
+        leaf.note(grid[i].upper, linear_mix(0.5f * float(theta), slab.theta_lo, slab.theta_hi),
+                  points[t * grid_points + i].p);
+      }
+      rules.analyse(leaf, grid);
+      if (rules.bounds) {
+        const Box box = box_of(leaf.cell, field.domain);
+        const float before = leaf.height;
+        leaf.raise(leaf.seen / shape(leaf, box, leaf.seen_at));
+        if (leaf.crossed) leaf.theta_cost += area_share(leaf.cell) * (leaf.height - before);
+      }
+    }
+  });
+}
+
+// The mass that the tree should see: 1, less the part of the slab that has no albedo.
+float expected_mass(const Slab& slab) {
+  float mass = 0;
+  for (std::size_t k = 0; k < theta_nodes; ++k) mass += slab.albedo[k] > 0 ? theta_weights[k] : 0.f;
+  return mass;
+}
+
+constexpr int coarse_levels = 12;  // of both axes together, down to which a missed lobe is looked for
+
+// The leaves of the fewest levels, to be halved along their longer sides; none below coarse_levels.
+std::vector<std::uint32_t> coarsest_leaves(Slab& slab) {
+  std::vector<std::uint32_t> leaves;
+  int fewest = coarse_levels;
+  const auto levels = [](const Node& node) { return node.leaf.cell.level_x + node.leaf.cell.level_y; };
+  for (const Node& node : slab.nodes) {
+    if (node.split == TreeSplit::leaf) fewest = std::min(fewest, levels(node));
+  }
+  if (fewest == coarse_levels) return leaves;
+  for (std::uint32_t i = 0; i < slab.nodes.size(); ++i) {
+    Node& node = slab.nodes[i];
+    if (node.split != TreeSplit::leaf || levels(node) > fewest) continue;
+    node.leaf.split_x = node.leaf.cell.level_x <= node.leaf.cell.level_y;
+    leaves.push_back(i);
+  }
+  return leaves;
+}
+
+// Cuts along the other axis would not help a leaf that is as small as can be along the one that matters.
+bool may_split(const Leaf& leaf) {
+  return (leaf.split_x ? leaf.cell.level_x : leaf.cell.level_y) < max_level;
+}
+
+// The leaves of largest excess, until the gain that they promise covers the surplus of cost.
+std::vector<std::uint32_t> dearest_leaves(Slab& slab, const GrowthRules& rules, float surplus, float fair) {
+  std::vector<std::uint32_t> order, chosen;
+  const auto excess = [&](std::uint32_t i) { return slab.nodes[i].leaf.cost - slab.nodes[i].leaf.ideal; };
+  float worst = 0;
+  std::size_t leaves = 0;
+  for (std::uint32_t i = 0; i < slab.nodes.size(); ++i) {
+    if (slab.nodes[i].split != TreeSplit::leaf) continue;
+    ++leaves;
+    if (!may_split(slab.nodes[i].leaf)) continue;
+    order.push_back(i);
+    worst = max(worst, excess(i));
+  }
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return excess(a) != excess(b) ? excess(a) > excess(b) : a < b;
+  });
+  for (const std::uint32_t i : order) {
+    const float e = excess(i);
+    const bool enough = surplus <= 0 || (!chosen.empty() && e < min(fair, 0.5f * worst));
+    if (enough || leaves + chosen.size() >= rules.max_leaves) break;
+    chosen.push_back(i);
+    surplus -= 0.5f * e;
+  }
+  return chosen;
+}
+
+// What a slab needs next: to be halved, or leaves to be split; nothing when it is done.
+struct Step {
+  bool halve = false;
+  std::vector<std::uint32_t> split;
+};
+Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_halve, float albedo_error) {
+  constexpr float narrowest_slab = 1e-5f;  // radians
+  if (!state.active) return {};
+  const float budget = rules.goal - 1;
+  const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
+  const bool nothing = cost <= 1.001f * floor_share;  // f is 0 in the slab
+  const bool fits = nothing || cost <= rules.goal * ideal;
+  // A stated error is far above the true one: a large one must not hide a lobe that no grid has seen.
+  const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * min(albedo_error, 0.01f);
+  std::vector<std::uint32_t> blind;
+  if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
+  const bool met = fits && blind.empty();
+  if (may_halve && (met || state.leaves >= state.next_check) &&
+      slab.theta_hi - slab.theta_lo > narrowest_slab) {
+    state.next_check = state.leaves * 3 / 2;
+    if (total(slab, &Leaf::theta_cost) > rules.theta_share * max(budget * ideal, cost - ideal)) {
+      return {true, {}};
+    }
+  }
+  if (met || state.leaves >= rules.max_leaves) return {};
+  if (!blind.empty()) return {false, blind};
+  const float fair = 1.5f * budget * ideal / float(state.leaves);  // equal shares are the optimum
+  return {false, dearest_leaves(slab, rules, cost - rules.goal * ideal, fair)};
+}
+
+// Replaces each halved slab by two fresh ones; the tasks already gathered move with their slabs.
+void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector<Task>& tasks,
+           const std::vector<std::uint32_t>& halved, const Survey& survey) {
+  std::vector<Slab> next;
+  std::vector<SlabState> next_states;
+  std::vector<std::uint32_t> moved(slabs.size());
+  std::vector<Task> fresh;
+  std::size_t h = 0;
+  for (std::uint32_t s = 0; s < slabs.size(); ++s) {
+    moved[s] = std::uint32_t(next.size());
+    if (h == halved.size() || halved[h] != s) {
+      next.push_back(std::move(slabs[s]));
+      next_states.push_back(states[s]);
+      continue;
+    }
+    ++h;
+    const float mid = 0.5f * (slabs[s].theta_lo + slabs[s].theta_hi);
+    for (const auto& [lo, hi] : {std::pair{slabs[s].theta_lo, mid}, std::pair{mid, slabs[s].theta_hi}}) {
+      fresh.push_back({std::uint32_t(next.size()), 0});
+      next.push_back(make_slab(lo, hi, survey.albedo, survey.field));
+      next_states.push_back({});
+    }
+  }
+  for (Task& task : tasks) task.slab = moved[task.slab];
+  tasks.insert(tasks.end(), fresh.begin(), fresh.end());
+  slabs = std::move(next);
+  states = std::move(next_states);
+}
+
+}  // namespace
+
+void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rules) {
+  std::vector<SlabState> states(slabs.size());
+  std::vector<Task> tasks;
+  for (std::uint32_t s = 0; s < slabs.size(); ++s) {
+    // A root that was looked at before may have been raised since: it keeps its bound.
+    if (slabs[s].nodes.size() == 1 && slabs[s].nodes[0].leaf.cost == 0) tasks.push_back({s, 0});
+    states[s].leaves = leaves_in_order(slabs[s]).size();
+  }
+  int round = 0;
+  for (bool busy = true; busy;) {
+    // How many rounds there will be, nobody knows: each brings the bar closer to the end of its stage.
+    survey.host.progress(
+        linear_mix(1 - 1 / (1 + 0.05f * float(round++)), rules.progress, rules.progress_end));
+    evaluate(slabs, tasks, survey, rules);
+    tasks.clear();
+    busy = false;
+    if (survey.effort.spent()) return;
+    std::vector<std::uint32_t> halved;
+    // Halved slabs begin again: what is left in the end belongs to their leaves.
+    const bool may_halve =
+        rules.split_slabs && double(survey.effort.evaluations) < 0.7 * double(survey.effort.limit);
+    for (std::uint32_t s = 0; s < slabs.size(); ++s) {
+      const Step step = next_step(slabs[s], states[s], rules, may_halve, survey.albedo.relative_error);
+      if (step.halve) halved.push_back(s);
+      for (const std::uint32_t i : step.split) {
+        split_leaf(slabs[s], i, survey.field.domain);
+        const std::uint32_t child = slabs[s].nodes[i].child;
+        tasks.push_back({s, child}), tasks.push_back({s, child + 1});
+      }
+      states[s].leaves += step.split.size();
+      states[s].active = step.halve || !step.split.empty();
+      busy = busy || states[s].active;
+    }
+    if (!halved.empty()) halve(slabs, states, tasks, halved, survey);
+  }
+}
+
+}  // namespace reflectree::detail

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "leaf.hpp"
+
+#include <cmath>
+
+namespace reflectree::detail {
+
+GridPlace grid_place(std::size_t index) {
+  const std::size_t i = index % grid_size, j = index / grid_size % grid_size,
+                    k = index / (grid_size * grid_size);
+  return {0.5f * float(k), 0.5f * (1 + lobatto_nodes[i]), 0.5f * (1 + lobatto_nodes[j])};
+}
+
+float shape(const Leaf& leaf, const Box& box, Vec2<float> p) {
+  const float s = clamp(2 * (p.x - box.x0) / box.width - 1, -1.f, 1.f);
+  const float t = clamp(2 * (p.y - box.y0) / box.height - 1, -1.f, 1.f);
+  return (1 + leaf.slope_x * s) * (1 + leaf.slope_y * t);
+}
+
+bool close_in_along_x(const Leaf& leaf) {
+  if (abs(leaf.seen_at.y) < 0.3f / float(1U << leaf.cell.level_y)) return false;
+  return leaf.cell.level_x <= leaf.cell.level_y;
+}
+
+namespace {
+
+// Where one point towers over the grid, the cut closes in on it.
+bool towers(const Leaf& leaf, float over) { return leaf.seen > 2 * over; }
+using Values = float[grid_size][grid_size];  // [y][x]
+
+// Mean and slopes of the best line along each axis: 3 E[v s] / E[v], in 1/128 as stored.
+struct Fit {
+  float mean, slope_x, slope_y;
+};
+Fit fit(const Values& v) {
+  float mean = 0, mx = 0, my = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i) {
+      const float w = lobatto_weights[j] * lobatto_weights[i] * v[j][i];
+      mean += w;
+      mx += w * lobatto_nodes[i];
+      my += w * lobatto_nodes[j];
+    }
+  }
+  const auto stored = [mean](float moment) {
+    return mean > 0 ? std::round(clamp(3 * moment / mean, -0.96875f, 0.96875f) * 128) / 128 : 0.f;
+  };
+  return {mean, stored(mx), stored(my)};
+}
+
+// Whether lines along x miss the rows by more than lines along y miss the columns: the axis to split.
+bool rows_are_rougher(const Values& v, const DyadicCell& cell) {
+  float miss_x = 0, miss_y = 0;
+  for (int a = 0; a < grid_size; ++a) {
+    float row = 0, row1 = 0, column = 0, column1 = 0;
+    for (int b = 0; b < grid_size; ++b) {
+      const float w = lobatto_weights[b];
+      row += w * v[a][b], row1 += 3 * w * v[a][b] * lobatto_nodes[b];
+      column += w * v[b][a], column1 += 3 * w * v[b][a] * lobatto_nodes[b];
+    }
+    for (int b = 0; b < grid_size; ++b) {
+      const float w = lobatto_weights[a] * lobatto_weights[b];
+      miss_x += w * sqr(v[a][b] - row - row1 * lobatto_nodes[b]);
+      miss_y += w * sqr(v[b][a] - column - column1 * lobatto_nodes[b]);
+    }
+  }
+  return miss_x > miss_y || (miss_x == miss_y && cell.level_x <= cell.level_y);
+}
+
+float grid_shape(float slope_x, float slope_y, int j, int i) {
+  return (1 + slope_x * lobatto_nodes[i]) * (1 + slope_y * lobatto_nodes[j]);
+}
+
+}  // namespace
+
+void analyse_exact(Leaf& leaf, const Grid& grid) {
+  const auto upper = [&](int k, int j, int i) {
+    return grid[std::size_t((k * grid_size + j) * grid_size + i)].upper;
+  };
+  Values envelope;
+  float mean = 0, highest = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i) {
+      envelope[j][i] = 0;
+      for (int k = 0; k < theta_nodes; ++k) {
+        envelope[j][i] = max(envelope[j][i], upper(k, j, i));
+        mean += theta_weights[k] * lobatto_weights[j] * lobatto_weights[i] *
+                grid[std::size_t((k * grid_size + j) * grid_size + i)].mean;
+      }
+      highest = max(highest, envelope[j][i]);
+    }
+  }
+  // Of a few shapes, the one that the envelope needs to be raised least: the best lines, milder ones, flat.
+  const Fit line = fit(envelope);
+  leaf.height = 1e30f;
+  for (const float part_x : {0.f, 0.75f, 1.f}) {
+    for (const float part_y : {0.f, 0.75f, 1.f}) {
+      const float gx = std::round(part_x * line.slope_x * 128) / 128,
+                  gy = std::round(part_y * line.slope_y * 128) / 128;
+      float bound = 0;
+      for (int j = 0; j < grid_size; ++j) {
+        for (int i = 0; i < grid_size; ++i) bound = max(bound, envelope[j][i] / grid_shape(gx, gy, j, i));
+      }
+      if (bound < leaf.height) leaf.height = bound, leaf.slope_x = gx, leaf.slope_y = gy;
+    }
+  }
+  float steady = 0, peak = -1;
+  for (int k = 0; k < theta_nodes; ++k) {
+    float bound = 0;
+    for (int j = 0; j < grid_size; ++j) {
+      for (int i = 0; i < grid_size; ++i) {
+        const float ratio = upper(k, j, i) / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
+        bound = max(bound, ratio);
+        if (ratio > peak) peak = ratio, leaf.peak = std::uint8_t((k * grid_size + j) * grid_size + i);
+      }
+    }
+    steady += theta_weights[k] * bound;
+  }
+  const float area = area_share(leaf.cell);
+  leaf.ideal = area * mean;
+  leaf.theta_cost = area * (leaf.height - steady);
+  leaf.split_x = rows_are_rougher(envelope, leaf.cell);
+  if (towers(leaf, highest)) leaf.split_x = close_in_along_x(leaf);
+  leaf.height = max(leaf.height, floor_share);
+  leaf.cost = area * leaf.height;
+}
+
+void analyse_one_shot(Leaf& leaf, const Grid& grid) {
+  Values m, s, d;  // over theta_o: mean, mean square, and that of the difference to the mirror image
+  float highest = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i) {
+      m[j][i] = s[j][i] = d[j][i] = 0;
+      for (int k = 0; k < theta_nodes; ++k) {
+        const FieldValue v = grid[std::size_t((k * grid_size + j) * grid_size + i)];
+        m[j][i] += theta_weights[k] * v.mean;
+        s[j][i] += theta_weights[k] * sqr(v.mean);
+        d[j][i] += theta_weights[k] * sqr(v.upper - v.mean);
+        highest = max(highest, v.upper);
+      }
+    }
+  }
+  const Fit line = fit(m);
+  leaf.slope_x = line.slope_x, leaf.slope_y = line.slope_y;
+  float square = 0, steady = 0, difference = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i) {
+      const float w = lobatto_weights[j] * lobatto_weights[i] / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
+      square += w * s[j][i];
+      steady += w * sqr(m[j][i]);
+      difference += w * d[j][i];
+    }
+  }
+  const float area = area_share(leaf.cell);
+  // What mirror images differ by belongs to the best density, but no splitting saves it: it is no cost.
+  leaf.height = max(sqrt(square + difference), floor_share);
+  leaf.ideal = area * line.mean;
+  leaf.cost = max(area * sqrt(square), leaf.ideal);
+  leaf.theta_cost = area * (sqrt(square) - sqrt(steady));
+  leaf.split_x = rows_are_rougher(m, leaf.cell);
+  // A needle between the points of the grid: pretend that it fills 1/16 of the leaf, until the grid sees it.
+  if (towers(leaf, highest)) {
+    const float cost = area * sqrt(square + sqr(leaf.seen) / 16);
+    if (leaf.crossed) leaf.theta_cost += cost - leaf.cost;
+    leaf.cost = cost;
+    leaf.split_x = close_in_along_x(leaf);
+  }
+}
+
+}  // namespace reflectree::detail

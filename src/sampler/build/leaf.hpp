@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// A leaf of a tree under construction: its cell of the square, the grid on which T is looked at, and what
+// both modes conclude from it: the shape of bound or density, its cost, and the axis to split.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "field.hpp"
+
+namespace reflectree::detail {
+
+// A dyadic cell of the square: x in [ix, ix + 1] / 2^level_x of the width, the same for y.
+struct DyadicCell {
+  std::uint32_t ix = 0, iy = 0;
+  std::uint8_t level_x = 0, level_y = 0;
+};
+// No leaf keeps less than this share of the slab's mean density: none loses support.
+inline constexpr float floor_share = 1e-3f;
+inline constexpr int max_level = 15;  // locations pack into 16 bits an axis
+
+struct Box {  // in square coordinates
+  float x0, y0, width, height;
+};
+inline Box box_of(const DyadicCell& cell, const Domain& domain) {
+  const SquareCell root = root_cell(domain.symmetry);
+  const float wx = 2.f / float(1U << cell.level_x), wy = (root.y1 - root.y0) / float(1U << cell.level_y);
+  return {-1 + float(cell.ix) * wx, root.y0 + float(cell.iy) * wy, wx, wy};
+}
+inline bool contains(const Box& box, Vec2<float> p) {
+  return p.x >= box.x0 && p.x <= box.x0 + box.width && p.y >= box.y0 && p.y <= box.y0 + box.height;
+}
+inline float area_share(const DyadicCell& cell) {
+  return 1.f / float(1U << cell.level_x) / float(1U << cell.level_y);
+}
+
+// Gauss-Lobatto nodes in x and y (edges included: monotone functions peak there), Simpson's in theta_o.
+inline constexpr int grid_size = 4, theta_nodes = 3, grid_points = theta_nodes * grid_size * grid_size;
+inline constexpr float lobatto_nodes[grid_size] = {-0.9999f, -0.447213595f, 0.447213595f, 0.9999f};
+inline constexpr float lobatto_weights[grid_size] = {1.f / 12, 5.f / 12, 5.f / 12, 1.f / 12};
+inline constexpr float theta_weights[theta_nodes] = {1.f / 6, 4.f / 6, 1.f / 6};
+
+// Where a point of the grid lies: shares of slab and leaf, in [0, 1].
+struct GridPlace {
+  float theta, x, y;
+};
+GridPlace grid_place(std::size_t index);
+
+// T / albedo on the grid of a leaf: [theta][y][x].
+using Grid = std::array<FieldValue, grid_points>;
+
+struct Leaf {
+  DyadicCell cell;
+  float ideal = 0, cost = 0, theta_cost = 0;  // theta_cost: the part of the cost that narrower slabs save
+  float height = 0;                           // bound of T / (albedo q), or its root mean square
+  bool split_x = false;
+  std::uint8_t peak = 0;           // exact: index in the grid of the largest T / (albedo q)
+  float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)
+  // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
+  // has found once is not lost between the points of a finer grid.
+  float seen = 0, seen_theta = 0;
+  bool crossed = false;  // a landmark moves through the leaf faster than the slab's three thetas can follow
+  Vec2<float> seen_at{};
+
+  // Remembers the largest T / albedo.
+  void note(float value, float theta, Vec2<float> at) {
+    if (value > seen) seen = value, seen_theta = theta, seen_at = at;
+  }
+  // To at least `bound`; the cost follows.
+  void raise(float bound) {
+    height = max(height, max(bound, floor_share));
+    cost = area_share(cell) * height;
+  }
+};
+
+// The cut that closes in on seen_at, whatever the grid says: towards the pole along the radius, elsewhere the
+// longer side.
+bool close_in_along_x(const Leaf& leaf);
+
+// The shape q of a leaf at p.
+float shape(const Leaf& leaf, const Box& box, Vec2<float> p);
+
+void analyse_exact(Leaf& leaf, const Grid& grid);
+void analyse_one_shot(Leaf& leaf, const Grid& grid);
+
+}  // namespace reflectree::detail

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tighten.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reflectree/math/random.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+
+namespace reflectree::detail {
+
+namespace {
+
+// What the climb may miss at a smooth summit: its last step spans 1/64 of the leaf.
+constexpr float margin = 1e-3f;
+
+struct Climber {
+  Slab* slab;
+  Leaf* leaf;
+  Box box;
+  float at[3];  // theta_o, x, y as shares of slab and leaf, in [0, 1]
+  float step[3];
+  float value;
+};
+
+FieldPoint point_of(const Climber& c, const float at[3]) {
+  const float theta = linear_mix(at[0], c.slab->theta_lo, c.slab->theta_hi);
+  return {clamp(cos(theta), min_cos_theta_o, 1.f),
+          {c.box.x0 + c.box.width * at[1], c.box.y0 + c.box.height * at[2]}};
+}
+
+// T / (albedo q): what the leaf's bound must reach at p.
+float ratio_of(const Survey& survey, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
+  const float a = albedo_at(survey.albedo, p.cos_theta_o);
+  return a > 0 && !survey.at_jump(p.cos_theta_o) ? v / (a * shape(leaf, box, p.p)) : 0.f;
+}
+
+// Coordinate steps up and down each axis, all climbers in one batch; steps shrink where none helps.
+void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
+  std::vector<FieldPoint> points(climbers.size() * 6);
+  std::vector<FieldValue> values(points.size());
+  const auto moved = [](const Climber& c, int k, float out[3]) {
+    std::copy_n(c.at, 3, out);
+    out[k / 2] = clamp(c.at[k / 2] + (k % 2 ? c.step[k / 2] : -c.step[k / 2]), 1e-5f, 1 - 1e-5f);
+  };
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < climbers.size(); ++i) {
+      for (int k = 0; k < 6; ++k) {
+        float at[3];
+        moved(climbers[i], k, at);
+        points[i * 6 + std::size_t(k)] = point_of(climbers[i], at);
+      }
+    }
+    survey.eval(points, values);
+    survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Climber& c = climbers[i];
+        float r[6];
+        for (int k = 0; k < 6; ++k) {
+          const std::size_t j = i * 6 + std::size_t(k);
+          r[k] = ratio_of(survey, *c.leaf, c.box, points[j], values[j].upper);
+        }
+        // Along each axis move to the better side, if it is better than here; else come closer.
+        const Climber before = c;
+        float best = before.value;
+        for (int axis = 0; axis < 3; ++axis) {
+          const int k = 2 * axis + (r[2 * axis + 1] > r[2 * axis]);
+          if (r[k] > best) {
+            best = r[k];
+            std::copy_n(before.at, 3, c.at);
+            float at[3];
+            moved(before, k, at);
+            std::copy_n(at, 3, c.at);
+          }
+          if (!(max(r[2 * axis], r[2 * axis + 1]) > before.value)) c.step[axis] *= 0.4f;
+        }
+        c.value = best;
+      }
+    });
+  }
+}
+
+Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float step, const Domain& domain) {
+  return {&slab, &leaf, box_of(leaf.cell, domain), {at.theta, at.x, at.y}, {step, step, step}, value};
+}
+GridPlace place_in(const Slab& slab, const Box& box, float theta, Vec2<float> p) {
+  return {(theta - slab.theta_lo) / (slab.theta_hi - slab.theta_lo), (p.x - box.x0) / box.width,
+          (p.y - box.y0) / box.height};
+}
+
+void raise(const Climber& c, float bound) {
+  const Vec2<float> p{c.box.x0 + c.box.width * c.at[1], c.box.y0 + c.box.height * c.at[2]};
+  c.leaf->note(c.value * shape(*c.leaf, c.box, p), linear_mix(c.at[0], c.slab->theta_lo, c.slab->theta_hi), p);
+  c.leaf->raise(bound);
+}
+
+}  // namespace
+
+void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Survey& survey) {
+  const Field& field = survey.field;
+  std::vector<Climber> climbers;
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    for (std::size_t i = first_new[s]; i < slabs[s].nodes.size(); ++i) {
+      Node& node = slabs[s].nodes[i];
+      if (node.split != TreeSplit::leaf) continue;
+      // From the largest ratio of the grid, and from the largest T seen by anyone.
+      Leaf& leaf = node.leaf;
+      const Box box = box_of(leaf.cell, field.domain);
+      climbers.push_back(start_at(slabs[s], leaf, grid_place(leaf.peak), 0, 0.2f, field.domain));
+      if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
+      climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_theta, leaf.seen_at),
+                                  leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));
+    }
+  }
+  climb(climbers, 7, survey);
+  for (const Climber& c : climbers) raise(c, c.value * (1 + margin));
+}
+
+namespace {
+
+// Random points of one leaf in a batch: its first and how many.
+struct ProbedLeaf {
+  std::uint32_t slab, node;
+  std::size_t first, count;
+};
+
+// Draws count(slab, leaf) points uniformly in every leaf (counts of 0 leave it out), evaluates them in
+// batches and hands each leaf its ratios T / (albedo q), of the upper or the mean of mirror images:
+// visit(probed, points, ratios).
+template <class Count, class Visit>
+void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue::*image,
+                  const Survey& survey, Count&& count_of, Visit&& visit) {
+  const Field& field = survey.field;
+  constexpr std::size_t batch = std::size_t(1) << 20U;
+  std::vector<FieldPoint> points;
+  std::vector<FieldValue> values;
+  std::vector<float> ratios;
+  std::vector<ProbedLeaf> probed;
+  const auto flush = [&] {
+    values.resize(points.size()), ratios.resize(points.size());
+    survey.eval(points, values);
+    survey.host.parallel_for(probed.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Leaf& leaf = slabs[probed[k].slab].nodes[probed[k].node].leaf;
+        const Box box = box_of(leaf.cell, field.domain);
+        for (std::size_t i = probed[k].first; i < probed[k].first + probed[k].count; ++i) {
+          ratios[i] = ratio_of(survey, leaf, box, points[i], values[i].*image);
+        }
+      }
+    });
+    for (const ProbedLeaf& p : probed) visit(p, points, ratios);
+    points.clear(), probed.clear();
+  };
+  for (std::uint32_t s = 0; s < slabs.size(); ++s) {
+    for (const std::uint32_t i : leaves_in_order(slabs[s])) {
+      const std::size_t count = count_of(slabs[s], i);
+      if (count == 0) continue;
+      Pcg32 u(seed + s, i);
+      const Climber c = start_at(slabs[s], slabs[s].nodes[i].leaf, {}, 0, 0, field.domain);
+      probed.push_back({s, i, points.size(), count});
+      for (std::size_t k = 0; k < count; ++k) {
+        const float at[3] = {to_unit_float(u()), to_unit_float(u()), to_unit_float(u())};
+        points.push_back(point_of(c, at));
+      }
+      if (points.size() >= batch) flush();
+    }
+  }
+  flush();
+}
+
+}  // namespace
+
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
+           std::vector<float>& overshoot) {
+  const Field& field = survey.field;
+  std::vector<double> found(slabs.size(), 0), mean_cost;
+  for (const Slab& slab : slabs) {
+    double total = 0;
+    const std::vector<std::uint32_t> leaves = leaves_in_order(slab);
+    for (const std::uint32_t i : leaves) total += double(slab.nodes[i].leaf.cost);
+    mean_cost.push_back(total / double(leaves.size()));
+  }
+  std::vector<Climber> climbers;
+  const auto count = [&](const Slab& slab, std::uint32_t i) {
+    const auto s = std::size_t(&slab - slabs.data());
+    if (overshoot[s] <= accepted) return std::size_t(0);
+    const double fair = double(slab.nodes[i].leaf.cost) / mean_cost[s];
+    return std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
+  };
+  const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
+                         const std::vector<float>& ratios) {
+    Slab& slab = slabs[t.slab];
+    Leaf& leaf = slab.nodes[t.node].leaf;
+    double excess = 0;
+    float worst = leaf.height;
+    std::size_t where = 0;
+    for (std::size_t i = t.first; i < t.first + t.count; ++i) {
+      if (ratios[i] > leaf.height) excess += double(ratios[i] - leaf.height);
+      if (ratios[i] > worst) worst = ratios[i], where = i;
+    }
+    if (!(excess > 0)) return;
+    if (survey.towers && worst > 8 * leaf.height) survey.towers->push_back(points[where]);
+    found[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
+    const Box box = box_of(leaf.cell, field.domain);
+    const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
+    climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
+  };
+  probe_leaves(slabs, seed, &FieldValue::upper, survey, count, visit);
+  climb(climbers, 6, survey);
+  for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->height + margin * c.value);
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    if (overshoot[s] > accepted) overshoot[s] = float(found[s]);
+  }
+}
+
+void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey) {
+  const Field& field = survey.field;
+  constexpr double doubtful = 1.5;  // more than the scatter of honest leaves
+  const auto count = [](const Slab& slab, std::uint32_t i) {
+    return std::size_t(64 + 8192 * area_share(slab.nodes[i].leaf.cell));
+  };
+  const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
+                         const std::vector<float>& ratios) {
+    Leaf& leaf = slabs[t.slab].nodes[t.node].leaf;
+    const Box box = box_of(leaf.cell, field.domain);
+    double sum = 0, sum2 = 0;  // of T^2 / (albedo^2 q), whose mean is the square of the best share
+    for (std::size_t i = t.first; i < t.first + t.count; ++i) {
+      const float v = ratios[i] * shape(leaf, box, points[i].p);
+      const double square = double(ratios[i]) * double(v);
+      sum += square, sum2 += square * square;
+      if (v > leaf.seen) leaf.note(v, acos(points[i].cos_theta_o), points[i].p);
+    }
+    const double n = double(t.count), square = sum / n;
+    const double error = std::sqrt(max(sum2 / n - square * square, 0.) / n);
+    const float area = area_share(leaf.cell);
+    const double believed = sqr(double(leaf.cost / area));
+    if (square <= doubtful * believed || square - error <= believed) return;
+    leaf.cost = area * float(std::sqrt(square));
+    leaf.height = max(leaf.height, float(std::sqrt(square)));
+    leaf.split_x = close_in_along_x(leaf);
+  };
+  probe_leaves(slabs, seed, &FieldValue::mean, survey, count, visit);
+}
+
+}  // namespace reflectree::detail

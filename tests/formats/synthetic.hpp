@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small files of every kind that is read, made in memory from formulas: tests hold no measured data.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reflectree/brdf/models/neural_brdf.hpp"
+#include "reflectree/formats/bytes.hpp"
+
+namespace reflectree::synthetic {
+
+struct Field {
+  std::string name;
+  std::uint8_t type;
+  std::vector<std::uint64_t> shape;
+  Bytes data;
+};
+
+inline void append_u16(Bytes& out, unsigned v) {
+  out.push_back(std::uint8_t(v & 0xffU));
+  out.push_back(std::uint8_t(v >> 8U));
+}
+
+inline Bytes tensor_file(const std::vector<Field>& fields) {
+  std::uint64_t offset = 18;
+  for (const Field& f : fields) offset += 2 + f.name.size() + 2 + 1 + 8 + 8 * f.shape.size();
+  Bytes out;
+  append_text(out, std::string_view("tensor_file\0\x01\x00", 14));
+  append_u32(out, std::uint32_t(fields.size()));
+  for (const Field& f : fields) {
+    append_u16(out, unsigned(f.name.size()));
+    append_text(out, f.name);
+    append_u16(out, unsigned(f.shape.size()));
+    out.push_back(f.type);
+    append_u64(out, offset);
+    for (const std::uint64_t n : f.shape) append_u64(out, n);
+    offset += f.data.size();
+  }
+  for (const Field& f : fields) out.insert(out.end(), f.data.begin(), f.data.end());
+  return out;
+}
+
+inline Field floats(const std::string& name, std::vector<std::uint64_t> shape,
+                    const std::vector<float>& values) {
+  Field field{name, 10, std::move(shape), {}};
+  for (const float v : values) append_f32(field.data, v);
+  return field;
+}
+
+// An isotropic RGB material; u and v lie in [0, 1], t is the index of theta_o.
+struct RglRecipe {
+  std::vector<float> theta_o{0.f, 0.5f, 1.1f, 1.5707964f};
+  std::function<float(float u)> sigma = [](float u) { return 1 - 0.8f * u; };
+  std::function<float(float u)> ndf = [](float u) { return 0.3f + 2 * (1 - u); };
+  std::function<float(int t, float u, float v)> vndf = [](int t, float u, float v) {
+    return 1 + 0.3f * float(t) * u + std::cos(6.2831853f * v) * (1 - u);
+  };
+  std::function<float(int t, int c, float x, float y)> rgb = [](int t, int c, float x, float y) {
+    return 0.2f + 0.1f * float(c) + 0.05f * float(t) * x + 0.3f * y * (1 - x);
+  };
+  int width = 11, height = 9, colours = 5, nodes = 8;  // of the warp, of the colours, of sigma and ndf
+  bool jacobian = true;
+};
+
+inline std::vector<Field> rgl_fields(const RglRecipe& r) {
+  const auto at = [](int i, int n) { return float(i) / float(n - 1); };
+  const auto u64 = [](std::size_t n) { return std::uint64_t(n); };
+  std::vector<float> sigma, ndf, vndf, rgb;
+  for (int row = 0; row < 2; ++row) {
+    for (int i = 0; i < r.nodes; ++i)
+      sigma.push_back(r.sigma(at(i, r.nodes))), ndf.push_back(r.ndf(at(i, r.nodes)));
+  }
+  for (int t = 0; t < int(r.theta_o.size()); ++t) {
+    for (int y = 0; y < r.height; ++y) {
+      for (int x = 0; x < r.width; ++x) vndf.push_back(r.vndf(t, at(x, r.width), at(y, r.height)));
+    }
+    for (int c = 0; c < 3; ++c) {
+      for (int y = 0; y < r.colours; ++y) {
+        for (int x = 0; x < r.colours; ++x) rgb.push_back(r.rgb(t, c, at(x, r.colours), at(y, r.colours)));
+      }
+    }
+  }
+  const std::uint64_t n = u64(r.theta_o.size()), w = std::uint64_t(r.width), h = std::uint64_t(r.height),
+                      m = std::uint64_t(r.colours), k = std::uint64_t(r.nodes);
+  return {floats("phi_i", {1}, {0}),
+          floats("theta_i", {n}, r.theta_o),
+          floats("sigma", {2, k}, sigma),
+          floats("ndf", {2, k}, ndf),
+          floats("vndf", {1, n, h, w}, vndf),
+          floats("rgb", {1, n, 3, m, m}, rgb),
+          Field{"jacobian", 1, {1}, {std::uint8_t(r.jacobian)}}};
+}
+
+inline Bytes rgl_file(const RglRecipe& recipe = {}) { return tensor_file(rgl_fields(recipe)); }
+
+inline Bytes as_bytes(const std::string& text) { return {text.begin(), text.end()}; }
+
+// A network of two materials, `one` and `two`, with weights from a small congruence.
+inline std::string neural_csv() {
+  std::string header = "material", rows[2] = {"one", "two"};
+  const std::size_t sizes[] = {NeuralBrdf::inputs, NeuralBrdf::hidden, NeuralBrdf::hidden,
+                               NeuralBrdf::outputs};
+  unsigned state = 1;
+  const auto add = [&](const std::string& name) {
+    header += "," + name;
+    for (std::string& row : rows) {
+      state = state * 1664525U + 1013904223U;
+      row += "," + std::to_string(float(state >> 8U) / 16777216.f * 0.4f - 0.15f);
+    }
+  };
+  for (std::size_t layer = 1; layer <= 3; ++layer) {
+    const std::string l = std::to_string(layer) + "_";
+    for (std::size_t i = 0; i < sizes[layer - 1]; ++i) {
+      for (std::size_t j = 0; j < sizes[layer]; ++j)
+        add("w" + l + std::to_string(i) + "_" + std::to_string(j));
+    }
+    for (std::size_t j = 0; j < sizes[layer]; ++j) add("b" + l + std::to_string(j));
+  }
+  return header + "\n" + rows[0] + "\n" + rows[1] + "\n";
+}
+
+// One material of each fitted model; the constant c of the first channel overflows a float.
+inline std::string sgd_csv() {
+  return "material,kd_r,kd_g,kd_b,ks_r,ks_g,ks_b,alpha_r,alpha_g,alpha_b,p_r,p_g,p_b,F0_r,F0_g,F0_b,F1_r,F1_"
+         "g,F1_b,"
+         "kap_r,kap_g,kap_b,lambda_r,lambda_g,lambda_b,c_r,c_g,c_b,k_r,k_g,k_b,theta0_r,theta0_g,theta0_b\n"
+         "varnish,0.05,0.03,0.02,0.04,0.6,0.3,0.015,0.03,0.05,0.46,0.45,0.53,0.9,0.25,0.6,0.1,0.2,0.5,"
+         "46,25,15,2.6,3,2.8,1e49,1.1e-07,5e-08,250,36,32,0.2,0.07,-0.07\r\n";
+}
+inline std::string abc_csv() {
+  return "material,kd_r,kd_g,kd_b,A_r,A_g,A_b,B,C,ior\nbronze,0.025,0.022,0.016,51.7,37.9,27.4,10482.13,0."
+         "8167,2.2365\n";
+}
+
+}  // namespace reflectree::synthetic
