@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "measured_data.hpp"
-#include "reflectree/brdf/tables/baked_tables.hpp"
+#include "reflectree/brdf/material/baked_tables.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/brdf/models/lambert.hpp"
 #include "reflectree/error.hpp"

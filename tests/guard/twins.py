@@ -42,11 +42,20 @@ class Planted(unittest.TestCase):
 
     def test_upward_include_in_a_source(self):
         self.plant("src/sampler/build/build.cpp", '  #  include "reflectree/formats/sampler_file.hpp"\n')
-        self.assert_caught(layers.broken_arrows, "sampler may not see io")
+        self.assert_caught(layers.broken_arrows, "sampler may not see formats")
 
     def test_sideways_include_at_the_rim(self):
         self.plant("src/verify/furnace.cpp", '#include "reflectree/draw/page.hpp"\n')
         self.assert_caught(layers.broken_arrows, "verify may not see draw")
+
+    def test_small_rooms_beside_each_other(self):
+        self.plant("include/reflectree/sampler/known/albedo.hpp", '#include "reflectree/sampler/square/tree.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "sampler/known may not see sampler/square")
+
+    def test_samplers_do_not_see_the_builder(self):
+        self.plant("src/sampler/build/leaf.hpp", "")
+        self.plant("src/sampler/pack.cpp", '#include "build/leaf.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "sampler/ may not see sampler/build")
 
     def test_library_in_the_core(self):
         self.plant("src/brdf/material/registry.cpp", "#include <fmt/core.h>\n")
@@ -54,7 +63,7 @@ class Planted(unittest.TestCase):
 
     def test_private_header_of_another_room(self):
         self.plant("src/math/secret.hpp", "")
-        self.plant("src/sampler/build/build.cpp", '#include "../math/secret.hpp"\n')
+        self.plant("src/sampler/build/build.cpp", '#include "../../math/secret.hpp"\n')
         self.assert_caught(layers.broken_arrows, "reaches into another folder")
 
     def test_embree_elsewhere(self):

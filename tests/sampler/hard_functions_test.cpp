@@ -5,7 +5,7 @@
 
 #include "functions.hpp"
 #include "majorant_field.hpp"
-#include "reflectree/brdf/tables/baked_tables.hpp"
+#include "reflectree/brdf/material/baked_tables.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/known/albedo.hpp"

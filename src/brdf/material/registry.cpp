@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "reflectree/brdf/tables/baked_tables.hpp"
+#include "reflectree/brdf/material/baked_tables.hpp"
 #include "reflectree/text/edit_distance.hpp"
 #include "reflectree/brdf/models/ashikhmin_shirley.hpp"
 #include "reflectree/brdf/models/cook_torrance.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "reflectree/brdf/tables/difference_vector.hpp"
-#include "reflectree/math/fast_trigonometry.hpp"
+#include "reflectree/math/fast_functions.hpp"
 
 namespace reflectree {
 namespace {
@@ -33,9 +33,9 @@ struct Position {
 };
 Position position(const HalfAngleTable& table, const ShadingGeometry<float>& g) {
   const auto [sin_h, difference] = detail::difference_vector(g);
-  const float theta_h = detail::first_quadrant_angle(sin_h, max(g.cos_theta_h, 0.f));
-  const float theta_d = detail::polar_angle(sin2_theta(difference), g.cos_theta_d);
-  const float phi_d = detail::angle(difference.y, difference.x);
+  const float theta_h = first_quadrant_angle(sin_h, max(g.cos_theta_h, 0.f));
+  const float theta_d = polar_angle(sin2_theta(difference), g.cos_theta_d);
+  const float phi_d = angle_of(difference.y, difference.x);
   const float period = table.reciprocal ? pi : 2 * pi;
   return {float(table.n_h) * sqrt(theta_h * (2.f / pi)), float(table.n_d) * theta_d * (2.f / pi),
           float(table.n_p) * (phi_d < 0 ? phi_d + period : phi_d) / period};

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "reflectree/math/fast_trigonometry.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/math/prefetch.hpp"
 
 namespace reflectree {
@@ -104,7 +104,7 @@ RglTable::RglTable(const RglFields& fields)
 }
 
 RglTable::Known RglTable::known(const ShadingGeometry<float>& g) const {
-  const float theta_o = detail::polar_angle(sin2_theta(g.wo), g.cos_theta_o);
+  const float theta_o = polar_angle(sin2_theta(g.wo), g.cos_theta_o);
   unsigned inner_nodes_passed = 0;  // counted without a branch: random directions would mispredict it
   for (std::size_t i = 1; i + 1 < theta_o_.size(); ++i)
     inner_nodes_passed += theta_o >= theta_o_[i] ? 1U : 0U;
@@ -171,8 +171,8 @@ RglTable::InWarp RglTable::in_warp(const Known& of_wo, const ShadingGeometry<flo
   // The half vector on the square, its azimuth relative to that of wo (absolute where wo is the normal).
   const bool normal = g.wo.x == 0 && g.wo.y == 0;
   const float ox = select(normal, 1.f, g.wo.x), oy = g.wo.y;
-  const float phi = detail::angle(ox * g.wh.y - oy * g.wh.x, ox * g.wh.x + oy * g.wh.y);
-  const float u = elevation_to_u(detail::polar_angle(sin2_theta(g.wh), g.cos_theta_h));
+  const float phi = angle_of(ox * g.wh.y - oy * g.wh.x, ox * g.wh.x + oy * g.wh.y);
+  const float u = elevation_to_u(polar_angle(sin2_theta(g.wh), g.cos_theta_h));
   const GridPosition px = locate(u, warp_width_), py = locate(phi * (0.5f / pi) + 0.5f, warp_height_);
   const std::size_t row = of_wo.pair * std::size_t(warp_height_) + std::size_t(py.node);
   return {warp_.data() + row * std::size_t(warp_width_) + std::size_t(px.node), rows_.data() + row,

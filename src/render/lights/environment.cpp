@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflectree/math/fast_trigonometry.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/math/prefetch.hpp"
 
@@ -90,9 +90,9 @@ Environment::Light Environment::Sky::in_cell(const Place& p) const {
 Environment::Sky::Place Environment::Sky::place_of(Direction direction) const {
   const Direction d = to_local(frame, direction);
   const float w = float(width), h = float(rows);
-  float x = detail::angle(d.x, -d.z) / (2 * pi) * w - .5f;
+  float x = angle_of(d.x, -d.z) / (2 * pi) * w - .5f;
   if (x < 0) x += w;
-  const float sine = std::sqrt(d.x * d.x + d.z * d.z), y = detail::angle(sine, d.y) / pi * h;
+  const float sine = std::sqrt(d.x * d.x + d.z * d.z), y = angle_of(sine, d.y) / pi * h;
   const int i = std::clamp(int(x), 0, width - 1), j = std::clamp(int(y), 0, rows - 1);
   return {i, j, x - float(i), y - float(j), sine};
 }

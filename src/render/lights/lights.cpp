@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "shapes/flat.hpp"
-#include "reflectree/math/circle.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/render/integrators/profile.hpp"
 
 namespace reflectree::render {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "reflectree/math/circle.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/render/integrators/path_bits.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "fresnel.hpp"
-#include "reflectree/math/circle.hpp"
-#include "reflectree/math/exponential.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "visible_slope.hpp"
 
 namespace reflectree::render {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflectree/math/exponential.hpp"
+#include "reflectree/math/fast_functions.hpp"
 
 namespace reflectree::render {
 

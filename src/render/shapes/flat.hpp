@@ -2,7 +2,7 @@
 // Rectangles and disks: where rays cross their planes, how large they are, their points.
 #pragma once
 
-#include "reflectree/math/circle.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/render/scene.hpp"
 
 namespace reflectree::render {

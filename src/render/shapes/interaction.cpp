@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "flat.hpp"
-#include "reflectree/math/fast_trigonometry.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/brdf/shading_geometry.hpp"
 #include "reflectree/render/shapes/embree_scene.hpp"
 
@@ -31,8 +31,8 @@ Interaction on_sphere(const Sphere& s, Point about) {
   const Vec3<double> from = Vec3<double>{about.x, about.y, about.z} - s.centre, out = normalize(from);
   const Vec3<double> at = s.centre + s.radius * out;
   const Direction n{float(out.x), float(out.y), float(out.z)}, local = to_local(s.axes, n);
-  const float turn = detail::angle(local.y, local.x) / (2 * pi);
-  const float polar = detail::angle(std::sqrt(sin2_theta(local)), local.z) / pi;
+  const float turn = angle_of(local.y, local.x) / (2 * pi);
+  const float polar = angle_of(std::sqrt(sin2_theta(local)), local.z) / pi;
   const Direction facing = s.inwards ? -n : n;
   return {{float(at.x), float(at.y), float(at.z)},
           facing,

@@ -15,7 +15,6 @@ namespace {
 
 constexpr float surprising = 2;  // times the bound
 constexpr std::size_t most_surprises = 8;
-constexpr float theta_max = 1.5707887f;
 
 const Slab& slab_of(const std::vector<Slab>& slabs, float theta) {
   const auto upper = std::upper_bound(slabs.begin(), slabs.end(), theta,

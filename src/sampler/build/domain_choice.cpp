@@ -31,7 +31,7 @@ float folding_cost(const std::vector<Slab>& slabs, const Field& field, std::uint
       const Box box = box_of(leaf.cell, field.domain);
       for (cost += double(leaf.cost); next < cost; next += step) {
         points.push_back(
-            {slab.cos_theta_o[1],
+            {slab.views[slab.views.size() / 2].cos_theta_o,
              {box.x0 + box.width * to_unit_float(u()), box.y0 + box.height * to_unit_float(u())}});
         weight.push_back(1 / double(leaf.height));
       }

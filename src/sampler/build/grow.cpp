@@ -21,10 +21,10 @@ struct SlabState {
 void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicCell& cell,
                 const Domain& domain) {
   const Box box = box_of(cell, domain);
-  for (int k = 0; k < theta_nodes; ++k) {
+  for (const View& view : slab.views) {
     for (int j = 0; j < grid_size; ++j) {
       for (int i = 0; i < grid_size; ++i) {
-        points.push_back({slab.cos_theta_o[std::size_t(k)],
+        points.push_back({view.cos_theta_o,
                           {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
                            box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])}});
       }
@@ -44,13 +44,12 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
   constexpr int octaves = 9;
   const bool above = box.y0 == 0, below = box.y0 + box.height == 0;
   if (!above && !below) return;
-  for (std::size_t k = 0; k < theta_nodes; ++k) {
+  for (const View& view : slab.views) {
     for (int octave = 1; octave <= octaves; ++octave) {
       for (const float node : lobatto_nodes) {
         const float y = std::ldexp(box.height, -octave);
         const Vec2<float> p{box.x0 + 0.5f * box.width * (1 + node), above ? y : -y};
-        const float theta = linear_mix(0.5f * float(k), slab.theta_lo, slab.theta_hi);
-        visits.push_back({task, {{slab.cos_theta_o[k], p}, slab.albedo[k], theta, 0}});
+        visits.push_back({task, {{view.cos_theta_o, p}, view.albedo, view.theta_o, 0}});
       }
     }
   }
@@ -61,11 +60,13 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
               const GrowthRules& rules) {
   const Field& field = survey.field;
   std::vector<FieldPoint> points;
-  points.reserve(tasks.size() * grid_points);
+  std::vector<std::size_t> first;  // of each task's grid
   for (const Task& task : tasks) {
     const Slab& slab = slabs[task.slab];
+    first.push_back(points.size());
     add_points(points, slab, slab.nodes[task.node].leaf.cell, field.domain);
   }
+  const std::size_t first_visit = points.size();
   std::vector<Visit> visits;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const Slab& slab = slabs[tasks[t].slab];
@@ -79,31 +80,28 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
   for (const Visit& visit : visits) points.push_back(visit.at.point);
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
-  const auto normalised = [&](const Slab& slab, std::size_t theta, std::size_t i) {
-    const float a = slab.albedo[theta];
-    return a > 0 ? FieldValue{values[i].mean / a, values[i].upper / a} : FieldValue{0, 0};
-  };
   for (std::size_t v = 0; v < visits.size(); ++v) {
     const Slab::Mark& landmark = visits[v].at;
     const Task& task = tasks[visits[v].task];
-    const std::size_t i = tasks.size() * grid_points + v;
+    const std::size_t i = first_visit + v;
     Leaf& leaf = slabs[task.slab].nodes[task.node].leaf;
     const Box box = box_of(leaf.cell, field.domain);
     leaf.crossed = leaf.crossed || landmark.travel > max(box.width, box.height);
     if (landmark.albedo > 0) leaf.note(values[i].upper / landmark.albedo, landmark.theta, points[i].p);
   }
   survey.host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<FieldValue> grid;
     for (std::size_t t = begin; t < end; ++t) {
       Slab& slab = slabs[tasks[t].slab];
       Leaf& leaf = slab.nodes[tasks[t].node].leaf;
-      Grid grid;
+      grid.assign(slab.views.size() * grid_points, {0, 0});
       for (std::size_t i = 0; i < grid.size(); ++i) {
-        const std::size_t theta = i / (grid_size * grid_size);
-        grid[i] = normalised(slab, theta, t * grid_points + i);
-        leaf.note(grid[i].upper, linear_mix(0.5f * float(theta), slab.theta_lo, slab.theta_hi),
-                  points[t * grid_points + i].p);
+        const View& view = slab.views[i / grid_points];
+        const FieldValue& v = values[first[t] + i];
+        if (view.albedo > 0) grid[i] = {v.mean / view.albedo, v.upper / view.albedo};
+        leaf.note(grid[i].upper, view.theta_o, points[first[t] + i].p);
       }
-      rules.analyse(leaf, grid);
+      rules.analyse(leaf, grid, slab.views);
       if (rules.bounds) {
         const Box box = box_of(leaf.cell, field.domain);
         const float before = leaf.height;
@@ -117,7 +115,7 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
 // The mass that the tree should see: 1, less the part of the slab that has no albedo.
 float expected_mass(const Slab& slab) {
   float mass = 0;
-  for (std::size_t k = 0; k < theta_nodes; ++k) mass += slab.albedo[k] > 0 ? theta_weights[k] : 0.f;
+  for (const View& view : slab.views) mass += view.albedo > 0 ? view.weight : 0.f;
   return mass;
 }
 

@@ -19,7 +19,7 @@ struct GrowthRules {
   std::size_t max_leaves = 60000;
   bool split_slabs = true;
   bool bounds = true;  // shares bound what was seen (exact), or fit it (one-shot)
-  std::function<void(Leaf&, const Grid&)> analyse;
+  std::function<void(Leaf&, Grid, std::span<const View>)> analyse;
   // T / albedo integrates to 1 in every slab. Where a tree that met its goal sees more or less than that, a
   // lobe runs between the points of its grids, and the coarsest leaves are halved until it is met.
   float mass_error = 0.004f;

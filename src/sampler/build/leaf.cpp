@@ -5,10 +5,9 @@
 
 namespace reflectree::detail {
 
-GridPlace grid_place(std::size_t index) {
-  const std::size_t i = index % grid_size, j = index / grid_size % grid_size,
-                    k = index / (grid_size * grid_size);
-  return {0.5f * float(k), 0.5f * (1 + lobatto_nodes[i]), 0.5f * (1 + lobatto_nodes[j])};
+GridPlace grid_place(std::span<const View> views, std::size_t index) {
+  const std::size_t i = index % grid_size, j = index / grid_size % grid_size, k = index / grid_points;
+  return {views[k].place, 0.5f * (1 + lobatto_nodes[i]), 0.5f * (1 + lobatto_nodes[j])};
 }
 
 float shape(const Leaf& leaf, const Box& box, Vec2<float> p) {
@@ -73,19 +72,18 @@ float grid_shape(float slope_x, float slope_y, int j, int i) {
 
 }  // namespace
 
-void analyse_exact(Leaf& leaf, const Grid& grid) {
-  const auto upper = [&](int k, int j, int i) {
-    return grid[std::size_t((k * grid_size + j) * grid_size + i)].upper;
+void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
+  const auto at = [&](std::size_t k, int j, int i) {
+    return grid[k * grid_points + std::size_t(j * grid_size + i)];
   };
   Values envelope;
   float mean = 0, highest = 0;
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
       envelope[j][i] = 0;
-      for (int k = 0; k < theta_nodes; ++k) {
-        envelope[j][i] = max(envelope[j][i], upper(k, j, i));
-        mean += theta_weights[k] * lobatto_weights[j] * lobatto_weights[i] *
-                grid[std::size_t((k * grid_size + j) * grid_size + i)].mean;
+      for (std::size_t k = 0; k < views.size(); ++k) {
+        envelope[j][i] = max(envelope[j][i], at(k, j, i).upper);
+        mean += views[k].weight * lobatto_weights[j] * lobatto_weights[i] * at(k, j, i).mean;
       }
       highest = max(highest, envelope[j][i]);
     }
@@ -105,16 +103,16 @@ void analyse_exact(Leaf& leaf, const Grid& grid) {
     }
   }
   float steady = 0, peak = -1;
-  for (int k = 0; k < theta_nodes; ++k) {
+  for (std::size_t k = 0; k < views.size(); ++k) {
     float bound = 0;
     for (int j = 0; j < grid_size; ++j) {
       for (int i = 0; i < grid_size; ++i) {
-        const float ratio = upper(k, j, i) / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
+        const float ratio = at(k, j, i).upper / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
         bound = max(bound, ratio);
-        if (ratio > peak) peak = ratio, leaf.peak = std::uint8_t((k * grid_size + j) * grid_size + i);
+        if (ratio > peak) peak = ratio, leaf.peak = std::uint16_t(k * grid_points + std::size_t(j * grid_size + i));
       }
     }
-    steady += theta_weights[k] * bound;
+    steady += views[k].weight * bound;
   }
   const float area = area_share(leaf.cell);
   leaf.ideal = area * mean;
@@ -125,17 +123,17 @@ void analyse_exact(Leaf& leaf, const Grid& grid) {
   leaf.cost = area * leaf.height;
 }
 
-void analyse_one_shot(Leaf& leaf, const Grid& grid) {
-  Values m, s, d;  // over theta_o: mean, mean square, and that of the difference to the mirror image
+void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {
+  Values m, s, d;  // over the views: mean, mean square, and that of the difference to the mirror image
   float highest = 0;
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
       m[j][i] = s[j][i] = d[j][i] = 0;
-      for (int k = 0; k < theta_nodes; ++k) {
-        const FieldValue v = grid[std::size_t((k * grid_size + j) * grid_size + i)];
-        m[j][i] += theta_weights[k] * v.mean;
-        s[j][i] += theta_weights[k] * sqr(v.mean);
-        d[j][i] += theta_weights[k] * sqr(v.upper - v.mean);
+      for (std::size_t k = 0; k < views.size(); ++k) {
+        const FieldValue v = grid[k * grid_points + std::size_t(j * grid_size + i)];
+        m[j][i] += views[k].weight * v.mean;
+        s[j][i] += views[k].weight * sqr(v.mean);
+        d[j][i] += views[k].weight * sqr(v.upper - v.mean);
         highest = max(highest, v.upper);
       }
     }

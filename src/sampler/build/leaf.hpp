@@ -3,8 +3,8 @@
 // both modes conclude from it: the shape of bound or density, its cost, and the axis to split.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "field.hpp"
 
@@ -34,32 +34,38 @@ inline float area_share(const DyadicCell& cell) {
   return 1.f / float(1U << cell.level_x) / float(1U << cell.level_y);
 }
 
-// Gauss-Lobatto nodes in x and y (edges included: monotone functions peak there), Simpson's in theta_o.
-inline constexpr int grid_size = 4, theta_nodes = 3, grid_points = theta_nodes * grid_size * grid_size;
+// Gauss-Lobatto nodes in x and y: edges included, since monotone functions peak there.
+inline constexpr int grid_size = 4, grid_points = grid_size * grid_size;
 inline constexpr float lobatto_nodes[grid_size] = {-0.9999f, -0.447213595f, 0.447213595f, 0.9999f};
 inline constexpr float lobatto_weights[grid_size] = {1.f / 12, 5.f / 12, 5.f / 12, 1.f / 12};
-inline constexpr float theta_weights[theta_nodes] = {1.f / 6, 4.f / 6, 1.f / 6};
+
+// A viewer of a slab at which its leaves are looked at; the weights of all views sum to 1.
+struct View {
+  float place;  // of theta_o between the slab's borders, in [0, 1]
+  float weight;
+  float theta_o, cos_theta_o, albedo;
+};
 
 // Where a point of the grid lies: shares of slab and leaf, in [0, 1].
 struct GridPlace {
   float theta, x, y;
 };
-GridPlace grid_place(std::size_t index);
+GridPlace grid_place(std::span<const View> views, std::size_t index);
 
-// T / albedo on the grid of a leaf: [theta][y][x].
-using Grid = std::array<FieldValue, grid_points>;
+// T / albedo on the grid of a leaf: [view][y][x].
+using Grid = std::span<const FieldValue>;
 
 struct Leaf {
   DyadicCell cell;
   float ideal = 0, cost = 0, theta_cost = 0;  // theta_cost: the part of the cost that narrower slabs save
   float height = 0;                           // bound of T / (albedo q), or its root mean square
   bool split_x = false;
-  std::uint8_t peak = 0;           // exact: index in the grid of the largest T / (albedo q)
+  std::uint16_t peak = 0;          // exact: index in the grid of the largest T / (albedo q)
   float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)
   // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
   // has found once is not lost between the points of a finer grid.
   float seen = 0, seen_theta = 0;
-  bool crossed = false;  // a landmark moves through the leaf faster than the slab's three thetas can follow
+  bool crossed = false;  // a landmark moves through the leaf faster than the slab's views can follow
   Vec2<float> seen_at{};
 
   // Remembers the largest T / albedo.
@@ -80,7 +86,7 @@ bool close_in_along_x(const Leaf& leaf);
 // The shape q of a leaf at p.
 float shape(const Leaf& leaf, const Box& box, Vec2<float> p);
 
-void analyse_exact(Leaf& leaf, const Grid& grid);
-void analyse_one_shot(Leaf& leaf, const Grid& grid);
+void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views);
+void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views);
 
 }  // namespace reflectree::detail

@@ -7,14 +7,16 @@ namespace reflectree::detail {
 
 Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Field& field) {
   constexpr int mark_steps = 12;
-  Slab slab{theta_lo, theta_hi, {}, {}, {}, {Node{}}};
+  Slab slab{theta_lo, theta_hi, {}, {}, {Node{}}};
   // Just inside the borders, where a neighbour's kink does not reach.
   const auto cosine_at = [&](float t) {
     return clamp(cos(linear_mix(clamp(t, 1e-4f, 1 - 1e-4f), theta_lo, theta_hi)), min_cos_theta_o, 1.f);
   };
-  for (std::size_t k = 0; k < theta_nodes; ++k) {
-    slab.cos_theta_o[k] = cosine_at(0.5f * float(k));
-    slab.albedo[k] = albedo_at(table, slab.cos_theta_o[k]);
+  // Simpson's rule.
+  constexpr float weights[] = {1.f / 6, 4.f / 6, 1.f / 6};
+  for (int k = 0; k < 3; ++k) {
+    const float place = 0.5f * float(k), c = cosine_at(place);
+    slab.views.push_back({place, weights[k], linear_mix(place, theta_lo, theta_hi), c, albedo_at(table, c)});
   }
   const std::vector<Landmark> first = field.landmarks(cosine_at(0)), last = field.landmarks(cosine_at(1));
   const auto travel = [&](std::size_t i) {
@@ -54,6 +56,15 @@ float total(const Slab& slab, float Leaf::*member) {
     if (node.split == TreeSplit::leaf) sum += double(node.leaf.*member);
   }
   return float(sum);
+}
+
+SlabTotal total_of(const Slab& slab) {
+  SlabTotal total;
+  for (const Node& node : slab.nodes) {
+    if (node.split == TreeSplit::leaf)
+      total.cost += double(node.leaf.cost), total.ideal += double(node.leaf.ideal);
+  }
+  return total;
 }
 
 void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain) {

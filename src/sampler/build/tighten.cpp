@@ -106,7 +106,7 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
       // From the largest ratio of the grid, and from the largest T seen by anyone.
       Leaf& leaf = node.leaf;
       const Box box = box_of(leaf.cell, field.domain);
-      climbers.push_back(start_at(slabs[s], leaf, grid_place(leaf.peak), 0, 0.2f, field.domain));
+      climbers.push_back(start_at(slabs[s], leaf, grid_place(slabs[s].views, leaf.peak), 0, 0.2f, field.domain));
       if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
       climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_theta, leaf.seen_at),
                                   leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));

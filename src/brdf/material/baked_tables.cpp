@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/brdf/tables/baked_tables.hpp"
+#include "reflectree/brdf/material/baked_tables.hpp"
 
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/brdf/models/oren_nayar.hpp"
