@@ -190,14 +190,17 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
   const bool met = fits && blind.empty();
   if (may_halve && (met || state.leaves >= state.next_check)) {
+    // What all known coordinates cost together, and the one that costs most.
     int dearest = -1;
-    float most = 0;
+    float most = 0, all = 0;
     for (int axis = 0; axis < slab.box.axes; ++axis) {
       const float saved = total_known_cost(slab, axis);
-      if (slab.box.width(axis) > narrowest[axis] && (dearest < 0 || saved > most)) dearest = axis, most = saved;
+      if (!(slab.box.width(axis) > narrowest[axis])) continue;
+      all += saved;
+      if (dearest < 0 || saved > most) dearest = axis, most = saved;
     }
     if (dearest >= 0) state.next_check = state.leaves * 3 / 2;
-    if (dearest >= 0 && most > rules.known_share * max(budget * ideal, cost - ideal)) return {dearest, {}};
+    if (dearest >= 0 && all > rules.known_share * max(budget * ideal, cost - ideal)) return {dearest, {}};
   }
   if (met || state.leaves >= rules.max_leaves) return {};
   if (!blind.empty()) return {-1, blind};

@@ -65,7 +65,7 @@ void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
     survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Climber& c = climbers[i];
-        std::array<float, 8> r;
+        std::array<float, 8> r{};
         for (std::size_t k = 0; k < neighbours; ++k) {
           const std::size_t j = i * neighbours + k;
           r[k] = ratio_of(survey, *c.leaf, c.box, points[j], values[j].upper);

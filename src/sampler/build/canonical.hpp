@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slabs under construction as the canonical data that is kept.
+#pragma once
+
+#include "slab.hpp"
+
+namespace reflectree::detail {
+
+Partition partition_of(const std::vector<Slab>& slabs);
+// The tree of a slab with its bounds, in integer masses that are rounded up.
+MajorantTree majorant_tree(const Slab& slab);
+DensityTree density_tree(const Slab& slab);
+
+}  // namespace reflectree::detail

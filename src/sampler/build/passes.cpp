@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "passes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grow.hpp"
+#include "tighten.hpp"
+
+namespace reflectree::detail {
+
+namespace {
+
+std::vector<float> sorted_borders(std::vector<float> knots, float end) {
+  std::vector<float> borders{0, end};
+  for (const float knot : knots) {
+    if (knot > 1e-4f && knot < end - 1e-4f) borders.push_back(knot);
+  }
+  std::sort(borders.begin(), borders.end());
+  borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
+  return borders;
+}
+
+}  // namespace
+
+std::vector<Slab> first_slabs(const Survey& survey) {
+  const Field& field = survey.field;
+  std::vector<float> knots = field.f.traits().theta_o_knots;
+  if (survey.jumps) knots.insert(knots.end(), survey.jumps->begin(), survey.jumps->end());
+  const std::vector<float> thetas = sorted_borders(knots, theta_max);
+  std::vector<float> phis{0, 0};
+  if (!field.frame.isotropic()) phis = sorted_borders({}, azimuth_span(field.frame.symmetry));
+  std::vector<Slab> slabs;
+  for (std::size_t i = 0; i + 1 < thetas.size(); ++i) {
+    for (std::size_t k = 0; k + 1 < phis.size(); ++k) {
+      const KnownBox box{{thetas[i], phis[k]}, {thetas[i + 1], phis[k + 1]}, field.axes()};
+      slabs.push_back(make_slab(box, survey.albedo, field));
+    }
+  }
+  return slabs;
+}
+
+namespace {
+
+std::size_t leaf_count(const std::vector<Slab>& slabs) {
+  std::size_t count = 0;
+  for (const Slab& slab : slabs) count += (slab.nodes.size() + 1) / 2;
+  return count;
+}
+
+}  // namespace
+
+std::vector<Slab> build_exact(const Survey& survey, const BuildOptions& options, BuildReport& report) {
+  std::vector<Slab> slabs = first_slabs(survey);
+  constexpr float accepted_overshoot = 2e-7f;
+  constexpr int max_passes = 8;
+  const float spare = 0.96f;  // of the budget: the attack will use the rest
+  GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
+  rules.progress = 0.4f, rules.progress_end = 0.6f;
+  survey.host.stage("growing exact trees");
+  grow(slabs, survey, rules);
+  rules.split_slabs = false;
+  rules.progress = 0.6f, rules.progress_end = 0.85f;
+  survey.host.stage("attacking the bounds");
+  std::vector<std::size_t> first_new(slabs.size(), 0);
+  std::vector<float> overshoot(slabs.size(), 1);  // as last estimated; slabs that are good are left alone
+  for (int pass = 0; pass < max_passes; ++pass) {
+    // A lobe that was met by chance is better looked at from the start than grown around blindly.
+    if (survey.towers && !survey.towers->empty() && report.overshoot_mass > 0.02f) break;
+    maximise(slabs, first_new, survey);
+    // However many leaves there are, a pass has an end.
+    const auto leaves = float(leaf_count(slabs));
+    const float per_leaf = min(clamp(1.5e6f / leaves, 400.f, 20000.f), max(6e7f / leaves, 40.f));
+    probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey,
+          overshoot);
+    report.overshoot_mass = *std::max_element(overshoot.begin(), overshoot.end());
+    bool dear = false;
+    for (std::size_t s = 0; s < slabs.size(); ++s) {
+      first_new[s] = slabs[s].nodes.size();
+      dear = dear || total_of(slabs[s]).cost > double(options.expected_trials);
+    }
+    if (survey.effort.spent() || (!dear && report.overshoot_mass <= accepted_overshoot)) break;
+    if (dear && pass + 1 < max_passes) {  // what grows last is attacked, too
+      rules.goal -= 0.06f * (options.expected_trials - 1);
+      grow(slabs, survey, rules);
+      for (std::size_t s = 0; s < slabs.size(); ++s) {
+        if (slabs[s].nodes.size() > first_new[s]) overshoot[s] = 1;
+      }
+    }
+  }
+  report.expected_trials = 0;
+  for (const Slab& slab : slabs)
+    report.expected_trials = max(report.expected_trials, float(total_of(slab).cost));
+  return slabs;
+}
+
+std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& options) {
+  std::vector<Slab> slabs = first_slabs(survey);
+  constexpr int max_passes = 4;
+  GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
+  rules.progress = 0.9f, rules.progress_end = 0.99f;
+  survey.host.stage("growing one-shot trees");
+  for (int pass = 0; pass < max_passes; ++pass) {
+    grow(slabs, survey, rules);
+    probe_density(slabs, options.seed + 2000003ULL * std::uint64_t(pass + 1), survey);
+    const bool met = std::all_of(slabs.begin(), slabs.end(), [&](const Slab& slab) {
+      const SlabTotal total = total_of(slab);
+      return total.cost <= double(rules.goal) * total.ideal;
+    });
+    if (met || survey.effort.spent()) break;
+  }
+  return slabs;
+}
+
+float median_variance(const std::vector<Slab>& slabs) {
+  std::vector<double> variance;
+  for (const Slab& slab : slabs) {
+    if (total_of(slab).ideal > 0) variance.push_back(total_of(slab).variance());
+  }
+  if (variance.empty()) return 0;
+  std::nth_element(variance.begin(), variance.begin() + std::ptrdiff_t(variance.size() / 2), variance.end());
+  return float(variance[variance.size() / 2]);
+}
+
+double worst_variance(const std::vector<Slab>& slabs) {
+  double worst = 0;
+  for (const Slab& slab : slabs) worst = std::max(worst, total_of(slab).variance());
+  return worst;
+}
+
+}  // namespace reflectree::detail
