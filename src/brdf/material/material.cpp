@@ -61,7 +61,7 @@ AnyBrdf make_term(const MaterialTerm& term, const FileLoader& load_file) {
   for (std::size_t i = 0; i < term.values.size(); ++i) {
     const ParameterInfo& p = model->parameters[i];
     if (!in_range(p, term.values[i]))
-      throw Error("is out of range", term.model + ":" + std::string(p.name), range_text(p));
+      throw Error("is out of range", term.model + ":" + std::string(p.name), range_text(p, p.name));
   }
   if (const char* fault = model->fault(term.values))
     throw Error("its parameters do not fit together", term.model, fault);
