@@ -6,12 +6,17 @@
 
 namespace reflectree {
 
-// Beckmann distribution per solid angle of the half vector: exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4).
-template <class T>
-T beckmann_distribution(Vec3<T> wh, T alpha) {
+// Beckmann distribution per solid angle of the half vector: exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4), with
+// the exponential of the caller's choice.
+template <class T, class Exponential>
+T beckmann_distribution(Vec3<T> wh, T alpha, const Exponential& exponential) {
   const T hz2 = max(sqr(wh.z), T(1e-18));  // keeps hz^4 a normal float
   const T a2 = sqr(alpha);
-  return exp(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
+  return exponential(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
+}
+template <class T>
+T beckmann_distribution(Vec3<T> wh, T alpha) {
+  return beckmann_distribution(wh, alpha, [](T x) { return exp(x); });
 }
 
 // V-cavity masking-shadowing G = min(1, 2 hz co / cos_d, 2 hz ci / cos_d), over 4 co ci; Torrance and
