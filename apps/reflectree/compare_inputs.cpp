@@ -5,8 +5,10 @@
 
 #include "compare.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/picture/image.hpp"
+#include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
+#include "reflectree/picture/image.hpp"
+#include "reflectree/text/joined_words.hpp"
 
 namespace reflectree::cli {
 
@@ -44,14 +46,17 @@ std::vector<std::string> default_materials(const Context& context, bool quick) {
 
 // The measured files of a folder.
 std::vector<std::string> files_of(const std::string& folder) {
+  const std::vector<std::string_view> endings = material_endings();
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path ending = entry.path().extension();
-    if (ending == ".binary" || ending == ".bsdf") files.push_back(entry.path().string());
+    const std::string ending = entry.path().extension().string();
+    if (std::find(endings.begin(), endings.end(), ending) != endings.end())
+      files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   if (files.empty())
-    throw Error("no measured files in this folder", folder, "name one with .binary or .bsdf files");
+    throw Error("no measured files in this folder", folder,
+                "name one with " + joined_words(endings, " or ") + " files");
   return files;
 }
 
