@@ -37,7 +37,7 @@ std::string fault_list() {
   return list;
 }
 
-Subject with_fault(const std::string& fault, Subject subject) {
+OpenedSampler with_fault(const std::string& fault, OpenedSampler subject) {
   if (fault != "halved-bound") return subject;
   subject.data = with_halved_bounds(std::move(subject.data));
   subject.packed = std::make_shared<const PackedSampler>(pack(subject.data));
@@ -46,7 +46,7 @@ Subject with_fault(const std::string& fault, Subject subject) {
   return subject;
 }
 
-Suspect suspect_with_fault(const Subject& subject, const std::string& fault) {
+Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& fault) {
   Suspect s = suspect(subject.sampler, subject.f, &subject.data);
   for (WayIn& way : s.ways) way = with_fault(std::move(way), fault);
   if (fault == "scaled-pdf") {
