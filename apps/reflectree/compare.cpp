@@ -100,7 +100,7 @@ int run_compare(const Context& context, const CompareOptions& given) {
     const Material material = parse_material(name, places);
     materials.push_back({name, material, make_brdf(material, places)});
   }
-  const std::vector<Environment> lights = read_lights(context, given);
+  const std::vector<Illumination> lights = read_lights(context, given);
   const std::string command = command_of(given), host_machine = machine();
   const Json options = key_of(o, lights, wanted);
   Json key = options;  // what kept results must agree in

@@ -61,7 +61,7 @@ std::vector<std::string> files_of(const std::string& folder) {
 }
 
 // Row 0 of the picture is the zenith; luminance by ITU-R BT.709.
-Environment read_environment(const std::string& path) {
+Illumination read_illumination(const std::string& path) {
   const Image image = rgb_of(read_image(path), path);
   LatLong map{image.width, image.height, {}};
   for (int y = 0; y < image.height; ++y) {
@@ -70,7 +70,7 @@ Environment read_environment(const std::string& path) {
       map.radiance.push_back(0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2]);
     }
   }
-  return make_environment(fs::path(path).stem().string(), std::move(map));
+  return make_illumination(fs::path(path).stem().string(), std::move(map));
 }
 
 }  // namespace
@@ -108,8 +108,8 @@ std::vector<const SamplerInfo*> chosen_samplers(const std::string& list) {
   return all;
 }
 
-std::vector<Environment> read_lights(const Context& context, const CompareOptions& given) {
-  std::vector<Environment> lights = procedural_environments();
+std::vector<Illumination> read_lights(const Context& context, const CompareOptions& given) {
+  std::vector<Illumination> lights = procedural_illuminations();
   std::vector<std::string> paths;
   for (const std::string& path : given.envmaps) paths.push_back(context.locate(path));
   const fs::path folder = context.locate("envmaps");
@@ -120,7 +120,7 @@ std::vector<Environment> read_lights(const Context& context, const CompareOption
     }
     std::sort(paths.begin(), paths.end());
   }
-  for (const std::string& path : paths) lights.push_back(read_environment(path));
+  for (const std::string& path : paths) lights.push_back(read_illumination(path));
   return lights;
 }
 

@@ -11,11 +11,7 @@ WayIn with_fault(WayIn way, const std::string& fault) {
   if (fault == "bent") return bent(std::move(way), 1);
   if (fault == "lost-support") {
     return lost_support(
-        std::move(way),
-        [](Direction wo) {
-          return Direction{-wo.x, -wo.y, wo.z};
-        },
-        0.99f);
+        std::move(way), [](Direction wo) { return mirror_direction(wo); }, 0.99f);
   }
   if (fault == "scaled-pdf") return scaled_pdf(std::move(way), 1.02f);
   if (fault == "scaled-weight") return scaled_weight(std::move(way), 1.02f);

@@ -27,7 +27,7 @@ struct AbcMicrofacet {
     const T n2 = T(ior) * T(ior);
     const T fresnel = fresnel_dielectric(g.cos_theta_d, refracted_root(g.cos_theta_d, n2), n2);
     const T specular = fresnel * lobe * masking / (pi_v<T> * g.cos_theta_o * g.cos_theta_i);
-    return T(1) / pi_v<T> * lift<T>(kd) + specular * lift<T>(a);
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + specular * as_rgb<T>(a);
   }
   BrdfTraits traits() const {
     BrdfTraits traits;

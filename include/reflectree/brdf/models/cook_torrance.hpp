@@ -39,7 +39,7 @@ struct CookTorrance {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T lobe = beckmann_distribution(g.wh, T(alpha)) * v_cavity_visibility(g);
-    return T(1) / pi_v<T> * lift<T>(kd) + lobe * (lift<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * (as_rgb<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
