@@ -55,6 +55,9 @@ Json json_of(const OpenedSampler& s, const std::vector<MeasuredFile>& measured) 
             {"target", target_text(d.target)},
             {"domain", reflectree::name_of(d.domain.kind)},
             {"half_square", d.domain.half()},
+            {"symmetry", reflectree::name_of(d.frame.symmetry)},
+            {"axis_deg", d.frame.isotropic() ? Json() : Json(shortest(d.frame.axis * 180 / pi))},
+            {"stretch", d.domain.kind == DomainKind::slope_star ? Json(shortest(d.domain.stretch)) : Json()},
             {"exact_slabs", d.exact.size()},
             {"exact_leaves", leaves_of(d.exact).total},
             {"largest_exact_tree", leaves_of(d.exact).largest},
@@ -110,9 +113,15 @@ void show_info(const Context& context, const std::string& command, const OpenedS
   line("target", target_text(d.target));
   line("domain", std::string(reflectree::name_of(d.domain.kind)) +
                      (d.domain.half() ? ", half a square (mirror symmetry)" : ", whole square"));
-  line("exact", fmt::format("{} slabs of theta_o, {} leaves, at most {} in a slab", d.exact.size(),
-                            exact.total, exact.largest));
-  line("one-shot", fmt::format("{} slabs of theta_o, {} leaves, at most {} in a slab", d.one_shot.size(),
+  const char* known = "theta_o";
+  if (!d.frame.isotropic()) {
+    known = "theta_o and phi_o";
+    line("anisotropic", fmt::format("{}, axis at {:.4g} degrees", reflectree::name_of(d.frame.symmetry),
+                                    d.frame.axis * 180 / pi));
+  }
+  line("exact", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.exact.size(), known, exact.total,
+                            exact.largest));
+  line("one-shot", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.one_shot.size(), known,
                                one_shot.total, one_shot.largest));
   line("bounds", bounds_text(s));
   line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(*s.packed)) / 1024));

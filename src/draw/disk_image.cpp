@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree::draw {
@@ -16,15 +16,24 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-// volume * probability / share * shape / projected_area of the leaf that holds wi.
-DiskImage tree_image(const CanonicalTree& tree, const Domain& domain, Direction wo, int size, double volume) {
+// volume * density * albedo / projected_area of the tree of the slab of wo.
+template <class Trees>
+DiskImage tree_image(const SamplerData& data, const Partition& partition, const Trees& trees, Direction wo, int size) {
+  Incidence in;
+  if (!find_incidence(pack_viewer(data), wo, in)) {
+    return disk_image([](std::span<const Direction>, std::span<float> out) { std::fill(out.begin(), out.end(), 0.f); },
+                      size);
+  }
+  const auto& tree = trees.at(slab_of(partition, in));
+  const Domain& domain = data.domain;
+  double scale = double(in.albedo);
+  if constexpr (requires { tree.volume; }) scale *= double(tree.volume);
   const TreeReader reader(tree, domain.symmetry);
   return disk_image(
       [&](std::span<const Direction> wi, std::span<float> out) {
         for (std::size_t i = 0; i < wi.size(); ++i) {
-          const Vec2<float> p = lower(domain, wo, fold(domain.symmetry, wi[i]));
-          const float projected_area = lift(domain, wo, p).projected_area;
-          out[i] = float(volume * reader.density_at(p)) / projected_area;
+          const Vec2<float> p = lower(domain, in.wo, fold(domain.symmetry, to_incidence(in, wi[i])));
+          out[i] = float(scale * reader.density_at(p)) / lift(domain, in.wo, p).projected_area;
         }
       },
       size);
@@ -91,18 +100,16 @@ DiskImage target_image(const AnyBrdf& f, const Target& target, Direction wo, int
 }
 
 std::size_t slab_of(const Partition& partition, Direction wo) {
-  const float theta_o = theta_of(wo);
-  return find_slab(partition, {&theta_o, 1});
+  const float known[2] = {theta_of(wo), 0};
+  return find_slab(partition, known);
 }
 
 DiskImage bound_image(const SamplerData& data, Direction wo, int size) {
-  const MajorantTree& tree = data.exact.at(slab_of(data.exact_partition, wo));
-  return tree_image(tree, data.domain, wo, size, double(tree.volume) * double(albedo_at(data.albedo, wo.z)));
+  return tree_image(data, data.exact_partition, data.exact, wo, size);
 }
 
 DiskImage one_shot_image(const SamplerData& data, Direction wo, int size) {
-  const DensityTree& tree = data.one_shot.at(slab_of(data.one_shot_partition, wo));
-  return tree_image(tree, data.domain, wo, size, double(albedo_at(data.albedo, wo.z)));
+  return tree_image(data, data.one_shot_partition, data.one_shot, wo, size);
 }
 
 Axis log_range(const DiskImage& image, double decades) {

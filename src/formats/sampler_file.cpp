@@ -142,7 +142,7 @@ void read_target(ByteReader& in, SamplerData& data) {
 }
 
 void read_domain(ByteReader& in, SamplerData& data) {
-  data.domain.kind = read_kind(in, DomainKind::normal_vector, "domain");
+  data.domain.kind = read_kind(in, DomainKind::slope_star, "domain");
   data.domain.symmetry = read_kind(in, Symmetry::mirror, "symmetry");
   data.domain.exponent = read_float(in);
 }
@@ -188,6 +188,13 @@ void read_notes(ByteReader& in, SamplerData& data) {
   for (std::string& note : data.report.notes) note = read_words(in);
 }
 
+void read_anisotropy(ByteReader& in, SamplerData& data) {
+  data.frame.symmetry = read_kind(in, ViewerSymmetry::none, "symmetry of the viewer");
+  data.frame.axis = read_float(in);
+  data.domain.stretch = read_float(in);
+  data.albedo.phi_o = read_floats(in);
+}
+
 struct ChunkReader {
   std::string_view tag;
   bool required;
@@ -207,6 +214,7 @@ constexpr ChunkReader chunk_readers[] = {
     {"SCAL", false, [](ByteReader& in, SamplerData& data) { data.target.scale = read_float(in); }},
     {"PRCH", false, [](ByteReader& in, SamplerData& data) { data.probes.channels = read_floats(in); }},
     {"NOTE", false, read_notes},
+    {"ANIS", false, read_anisotropy},
 };
 
 const ChunkReader* find_reader(std::string_view tag) {
@@ -284,7 +292,13 @@ Bytes encode_sampler(const SamplerData& data) {
     append_u64(p, r.evaluations);
   };
   chunk("REPT", report, optional_flag);
-  // What most samplers have not: an older reader must not overlook a scale.
+  // What most samplers have not: an older reader must not overlook a scale, or the azimuth of the viewer.
+  if (!data.frame.isotropic()) {
+    chunk("ANIS", [&](Bytes& p) {
+      append_u8(p, std::uint8_t(data.frame.symmetry)), append_f32(p, data.frame.axis);
+      append_f32(p, data.domain.stretch), append_floats(p, data.albedo.phi_o);
+    });
+  }
   if (data.target.scale != 1) chunk("SCAL", [&](Bytes& p) { append_f32(p, data.target.scale); });
   if (!data.probes.channels.empty())
     chunk(

@@ -8,7 +8,7 @@ namespace reflectree {
 
 namespace {
 
-// Slabs ascend in theta_o; the lookup ascends in the cosine.
+// Slabs of one coordinate ascend in theta_o; the lookup ascends in the cosine.
 CosineLookup lookup_of(const Partition& partition) {
   std::vector<float> cosines;
   for (const SlabBox& box : slab_boxes(partition)) cosines.push_back(cos(box.lo[0]));
@@ -18,8 +18,26 @@ CosineLookup lookup_of(const Partition& partition) {
   return CosineLookup(cosines);
 }
 
-// Appends a slab with its leaves and alias table; a leaf's height is unit * mass / area. Slabs ascend in
-// theta_o, the forest in the cosine. Returns the masses as the alias table has them.
+void index(const Partition& partition, PackedForest& forest) {
+  if (partition.coordinates.size() == 1) {
+    forest.lookup = lookup_of(partition);
+  } else {
+    forest.tree = SlabTree(partition);
+  }
+}
+
+// visit(tree) of every slab: of one coordinate in order of the cosine, of more in that of the partition.
+template <class Tree, class Visit>
+void in_packed_order(const std::vector<Tree>& trees, const ViewerFrame& frame, const Visit& visit) {
+  if (frame.isotropic()) {
+    for (auto tree = trees.rbegin(); tree != trees.rend(); ++tree) visit(*tree);
+  } else {
+    for (const Tree& tree : trees) visit(tree);
+  }
+}
+
+// Appends a slab with its leaves and alias table; a leaf's height is unit * mass / area. Returns the
+// masses as the alias table has them.
 std::vector<std::uint32_t> append(const CanonicalTree& tree, double unit, PackedForest& forest) {
   std::vector<PackedLeaf> leaves;
   std::vector<std::uint32_t> mass;
@@ -40,33 +58,45 @@ std::vector<std::uint32_t> append(const CanonicalTree& tree, double unit, Packed
 }
 
 std::size_t bytes_of(const PackedForest& forest) {
-  return forest.lookup.bytes() + forest.slabs.size() * sizeof(PackedSlab) +
+  return forest.lookup.bytes() + forest.tree.bytes() + forest.slabs.size() * sizeof(PackedSlab) +
          forest.leaves.size() * sizeof(PackedLeaf) + forest.nodes.size() * sizeof(DescentNode);
 }
 
 }  // namespace
+
+PackedViewer pack_viewer(const SamplerData& data) {
+  PackedViewer viewer{pack(data.albedo), data.frame};
+  viewer.turns = data.frame.isotropic() || !data.domain.follows_surface();
+  viewer.cos_axis = cos(data.frame.axis), viewer.sin_axis = sin(data.frame.axis);
+  return viewer;
+}
+
+std::size_t slab_of(const Partition& partition, const Incidence& in) {
+  const float known[2] = {theta_of(in.wo), in.phi_o};
+  return find_slab(partition, known);
+}
 
 PackedSampler pack(const SamplerData& data) {
   validate(data);
   PackedSampler packed;
   packed.domain = data.domain;
   packed.target = data.target;
-  packed.albedo = pack(data.albedo);
-  packed.exact.lookup = lookup_of(data.exact_partition);
-  for (auto tree = data.exact.rbegin(); tree != data.exact.rend(); ++tree) {
-    append(*tree, double(tree->volume) / total_mass(*tree), packed.exact);
-  }
-  packed.one_shot.lookup = lookup_of(data.one_shot_partition);
-  for (auto tree = data.one_shot.rbegin(); tree != data.one_shot.rend(); ++tree) {
-    const std::vector<std::uint32_t> mass = append(*tree, 0, packed.one_shot);
+  packed.viewer = pack_viewer(data);
+  index(data.exact_partition, packed.exact);
+  in_packed_order(data.exact, data.frame, [&](const MajorantTree& tree) {
+    append(tree, double(tree.volume) / total_mass(tree), packed.exact);
+  });
+  index(data.one_shot_partition, packed.one_shot);
+  in_packed_order(data.one_shot, data.frame, [&](const DensityTree& tree) {
+    const std::vector<std::uint32_t> mass = append(tree, 0, packed.one_shot);
     packed.one_shot.slabs.back().first_node = std::uint32_t(packed.one_shot.nodes.size());
-    append_descent(*tree, mass, packed.one_shot.nodes);
-  }
+    append_descent(tree, mass, packed.one_shot.nodes);
+  });
   return packed;
 }
 
 std::size_t bytes_of(const PackedSampler& packed) {
-  return sizeof packed + bytes_of(packed.exact) + bytes_of(packed.one_shot) + packed.albedo.bytes();
+  return sizeof packed + bytes_of(packed.exact) + bytes_of(packed.one_shot) + packed.viewer.albedo.bytes();
 }
 
 }  // namespace reflectree

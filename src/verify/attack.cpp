@@ -20,16 +20,17 @@ struct Climber {
 
 bool higher(const Climber& a, const Climber& b) { return a.ratio > b.ratio; }
 
-// Pattern search: six neighbours along the axes and four random ones; the step follows success.
-void climb(const RatioFunction& ratio, Climber& c, double step, int steps, Pcg32 u) {
-  std::array<AttackPoint, 10> around;
-  std::array<double, around.size()> values;
-  for (int s = 0; s < steps; ++s) {
+// Pattern search: neighbours along the axes and four random ones; the step follows success.
+void climb(const RatioFunction& ratio, Climber& c, double step, const AttackOptions& options, Pcg32 u) {
+  const auto axes = std::size_t(options.coordinates);
+  std::vector<AttackPoint> around(2 * axes + 4);
+  std::vector<double> values(around.size());
+  for (int s = 0; s < options.steps; ++s) {
     for (std::size_t k = 0; k < around.size(); ++k) {
       around[k] = c.at;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < axes; ++axis) {
         const double move =
-            k < 6 ? (k / 2 == axis ? (k % 2 ? step : -step) : 0) : step * (2 * to_unit_double(u()) - 1);
+            k < 2 * axes ? (k / 2 == axis ? (k % 2 ? step : -step) : 0) : step * (2 * to_unit_double(u()) - 1);
         around[k][axis] = std::clamp(c.at[axis] + move, 0., 1.);
       }
     }
@@ -59,7 +60,7 @@ AttackResult attack(const RatioFunction& ratio, const AttackOptions& options, co
     std::vector<AttackPoint> points(size);
     std::vector<double> values(size);
     for (std::size_t i = 0; i < size; ++i) {
-      for (std::uint32_t d = 0; d < 3; ++d) {
+      for (std::uint32_t d = 0; d < std::uint32_t(options.coordinates); ++d) {
         points[i][d] = scrambled_sobol(std::uint32_t(c * chunk + i), d, std::uint32_t(options.seed));
       }
     }
@@ -78,7 +79,7 @@ AttackResult attack(const RatioFunction& ratio, const AttackOptions& options, co
 
   const double step = std::cbrt(1 / double(std::max<std::size_t>(options.probes, 1)));
   detail::for_each_index(host, true, climbers.size(), [&](std::size_t i) {
-    climb(ratio, climbers[i], step, options.steps, detail::part_generator(options.seed, i));
+    climb(ratio, climbers[i], step, options, detail::part_generator(options.seed, i));
   });
   AttackResult result;
   result.evaluations = options.probes;

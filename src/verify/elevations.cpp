@@ -35,6 +35,7 @@ std::vector<Direction> stratified_viewers(std::size_t count, Pcg32& u) {
 std::vector<Direction> border_viewers(const PackedSampler& packed, std::size_t count, Pcg32& u) {
   std::vector<Direction> viewers;
   for (const PackedForest* forest : {&packed.exact, &packed.one_shot}) {
+    if (!forest->tree.empty()) continue;  // borders of anisotropic samplers are met at random
     const std::vector<float>& all = forest->lookup.borders();
     // Without the ends: the horizon, and what closes the list above 1.
     std::vector<float> borders(all.begin() + 1, all.end() - 1);
@@ -51,14 +52,14 @@ std::vector<Direction> border_viewers(const PackedSampler& packed, std::size_t c
 }
 
 std::vector<double> table_places(const PackedSampler& packed, std::size_t count, Pcg32& u) {
-  const std::vector<float>& borders = packed.albedo.lookup.borders();
+  const std::vector<float>& borders = packed.viewer.albedo.lookup.borders();
   std::vector<double> nodes(borders.begin(), borders.end());
   nodes.back() = 1;
   struct Place {
     double bend, cosine;
   };
   std::vector<Place> places;
-  const auto albedo = [&](std::size_t i) { return double(packed.albedo.at(float(nodes[i]))); };
+  const auto albedo = [&](std::size_t i) { return double(packed.viewer.albedo.at(float(nodes[i]))); };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     double bend = 0;
     if (i > 0 && i + 1 < nodes.size()) {

@@ -34,13 +34,13 @@ struct Place {
 // Down the packed tree by halving cells; the shares of probability play no part.
 std::optional<Place> locate(const PackedSampler& packed, Direction wo, Direction wi) {
   Incidence in;
-  if (!find_incidence(packed.albedo, wo, in)) return std::nullopt;
+  if (!find_incidence(packed.viewer, wo, in)) return std::nullopt;
   const bool half = packed.domain.half();
   Direction local = to_incidence(in, wi);
   if (half) local.y = std::abs(local.y);
   const Vec2<float> p = lower(packed.domain, in.wo, local);
   const PackedForest& forest = packed.one_shot;
-  const PackedSlab& slab = forest.slab_at(in.wo.z);
+  const PackedSlab& slab = forest.slab_at(in);
   const DescentNode* node = forest.nodes.data() + slab.first_node;
   std::size_t leaf = 0;
   double x = -1, y = half ? 0 : -1, width = 2, length = half ? 1 : 2;

@@ -39,36 +39,55 @@ std::string text(const char* format, double a, double b = 0, double c = 0) {
 CheckResult check_albedo(const SamplerData& data, const PackedSampler& packed) {
   Worst worst;
   const AlbedoTable& table = data.albedo;
-  for (std::size_t i = 0; i + 1 < table.albedo.size(); ++i) {
-    const double c0 = double(table.cos_theta_o[i]), c1 = double(table.cos_theta_o[i + 1]);
-    const double a0 = double(table.albedo[i]), a1 = double(table.albedo[i + 1]);
-    for (const double part : {0., 0.25, 0.5, 0.75, 1.}) {
-      // An inner node belongs to the piece above it.
-      if (part == 1 && i + 2 < table.albedo.size()) continue;
-      const float c = part < 1 ? float(c0 + part * (c1 - c0)) : table.cos_theta_o[i + 1];
-      const double t = (double(c) - c0) / (c1 - c0), expected = a0 + t * (a1 - a0);
-      // base + slope c in float: three roundings of the larger.
-      const double slope = (a1 - a0) / (c1 - c0), base = a0 - slope * c0;
-      const double rounding = 3e-7 * (std::abs(base) + std::abs(slope * double(c))) + 1e-7 * expected + 1e-37;
-      worst.see(
-          std::abs(double(packed.albedo.at(c)) - expected), rounding,
-          text("theta_o %.4f deg: %.8g for %.8g", std::acos(std::min(double(c), 1.)) * 180 / pi_v<double>,
-               double(packed.albedo.at(c)), expected));
+  const std::size_t columns = table.cos_theta_o.size();
+  for (std::size_t row = 0; row < std::max<std::size_t>(table.phi_o.size(), 1); ++row) {
+    const float* albedo = table.albedo.data() + row * columns;
+    const float phi = table.phi_o.empty() ? 0 : table.phi_o[row];
+    const auto looked_up = [&](float c) {
+      return double(table.phi_o.empty() ? packed.viewer.albedo.at(c) : packed.viewer.albedo.at(c, phi));
+    };
+    for (std::size_t i = 0; i + 1 < columns; ++i) {
+      const double c0 = double(table.cos_theta_o[i]), c1 = double(table.cos_theta_o[i + 1]);
+      const double a0 = double(albedo[i]), a1 = double(albedo[i + 1]);
+      for (const double part : {0., 0.25, 0.5, 0.75, 1.}) {
+        // An inner node belongs to the piece above it.
+        if (part == 1 && i + 2 < columns) continue;
+        const float c = part < 1 ? float(c0 + part * (c1 - c0)) : table.cos_theta_o[i + 1];
+        const double t = (double(c) - c0) / (c1 - c0), expected = a0 + t * (a1 - a0);
+        // base + slope c in float: three roundings of the larger. Beside a row, a rounding of the next one.
+        const double slope = (a1 - a0) / (c1 - c0), base = a0 - slope * c0;
+        double rounding = 3e-7 * (std::abs(base) + std::abs(slope * double(c))) + 1e-7 * expected + 1e-37;
+        if (!table.phi_o.empty()) rounding += 1e-5 * expected;
+        worst.see(std::abs(looked_up(c) - expected), rounding,
+                  text("theta_o %.4f deg: %.8g for %.8g", std::acos(std::min(double(c), 1.)) * 180 / pi_v<double>,
+                       looked_up(c), expected));
+      }
     }
   }
   return worst.result("packed_albedo");
 }
 
-// Slabs ascend in theta_o in the canonical form, in the cosine in the packed one.
+// Slabs of one coordinate ascend in theta_o in the canonical form, in the cosine in the packed one.
 const PackedSlab& packed_slab(const PackedForest& forest, std::size_t slabs, std::size_t canonical) {
-  return forest.slabs[slabs - 1 - canonical];
+  return forest.slabs[forest.tree.empty() ? slabs - 1 - canonical : canonical];
 }
 
 void check_borders(const char* mode, const Partition& partition, const PackedForest& forest, Worst& worst) {
   const std::vector<SlabBox> boxes = slab_boxes(partition);
   worst.must(forest.slabs.size() == boxes.size(), std::string(mode) + ": one packed slab a slab");
   if (forest.slabs.size() != boxes.size()) return;
-  for (std::size_t s = 0; s < boxes.size(); ++s) {
+  for (std::size_t s = 0; s < boxes.size() && !forest.tree.empty(); ++s) {
+    for (const float x : {0.001f, 0.5f, 0.999f}) {
+      for (const float y : {0.001f, 0.5f, 0.999f}) {
+        const float theta = linear_mix(x, boxes[s].lo[0], boxes[s].hi[0]);
+        const float phi = linear_mix(y, boxes[s].lo[1], boxes[s].hi[1]);
+        const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), phi);
+        worst.must(found == s, std::string(mode) + text(", theta_o %.6g, phi_o %.6g: another slab", double(theta),
+                                                        double(phi)));
+      }
+    }
+  }
+  for (std::size_t s = 0; s < boxes.size() && forest.tree.empty(); ++s) {
     const double upper = std::cos(double(boxes[s].lo[0]));
     const double lower = std::max(std::cos(double(boxes[s].hi[0])), double(min_cos_theta_o));
     // Three roundings away from the borders; a slab thinner than that cannot be told.

@@ -8,7 +8,7 @@
 
 #include "elevations.hpp"
 #include "parallel.hpp"
-#include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/packed_sampler.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/verify/significance.hpp"
 
@@ -90,78 +90,19 @@ CheckResult check_giving_up(const WayIn& way, std::uint64_t promised) {
 
 namespace {
 
-// The leaf that holds a point of the square, in a canonical tree.
-class LeafFinder {
- public:
-  LeafFinder(const std::vector<TreeSplit>& nodes, const Domain& domain) : half_(domain.half()) {
-    std::size_t next = 0, leaf = 0;
-    nodes_.reserve(nodes.size());
-    add(nodes, next, leaf);
-  }
-  struct Found {
-    std::size_t index;
-    double x, y, width, length;
-  };
-  Found find(Vec2<float> p) const {
-    Found at{0, -1, half_ ? 0. : -1., 2, half_ ? 1. : 2.};
-    std::size_t i = 0;
-    while (nodes_[i].split != TreeSplit::leaf) {
-      const bool x = nodes_[i].split == TreeSplit::x;
-      double &start = x ? at.x : at.y, &size = x ? at.width : at.length;
-      size *= 0.5;
-      const bool upper = double(x ? p.x : p.y) >= start + size;
-      if (upper) start += size;
-      i = upper ? nodes_[i].upper_or_leaf : i + 1;
-    }
-    at.index = nodes_[i].upper_or_leaf;
-    return at;
-  }
+// The bound of T / a, per share of the square, and what finds its place.
+struct Bounds {
+  const SamplerData& data;
+  PackedViewer viewer;
+  std::vector<TreeReader> readers;
 
- private:
-  struct Node {
-    TreeSplit split;
-    std::size_t upper_or_leaf;
-  };
-  void add(const std::vector<TreeSplit>& nodes, std::size_t& next, std::size_t& leaf) {
-    const TreeSplit split = nodes[next++];
-    const std::size_t at = nodes_.size();
-    nodes_.push_back({split, split == TreeSplit::leaf ? leaf++ : 0});
-    if (split == TreeSplit::leaf) return;
-    add(nodes, next, leaf);
-    nodes_[at].upper_or_leaf = nodes_.size();
-    add(nodes, next, leaf);
+  explicit Bounds(const SamplerData& the_data) : data(the_data), viewer(pack_viewer(data)) {
+    for (const MajorantTree& tree : data.exact) readers.emplace_back(tree, data.domain.symmetry);
   }
-  std::vector<Node> nodes_;
-  bool half_;
-};
-
-// The bound of T / a at a point of the square, per share of it.
-class Bounds {
- public:
-  explicit Bounds(const SamplerData& data) : data_(data) {
-    for (const MajorantTree& tree : data_.exact) {
-      finders_.emplace_back(tree.nodes, data_.domain);
-      double sum = 0;
-      for (const std::uint32_t m : tree.mass) sum += m;
-      scale_.push_back(double(tree.volume) / sum);
-    }
+  double at(const Incidence& in, Vec2<float> p) const {
+    const std::size_t slab = slab_of(data.exact_partition, in);
+    return double(data.exact[slab].volume) * readers[slab].density_at(p);
   }
-  double at(Direction wo, Vec2<float> p) const {
-    const float theta = theta_of(wo);
-    const std::size_t slab = find_slab(data_.exact_partition, {&theta, 1});
-    const CanonicalTree& tree = data_.exact[slab];
-    const auto leaf = finders_[slab].find(p);
-    const double share = leaf.width * leaf.length / (data_.domain.half() ? 2 : 4);
-    const double s = 2 * (double(p.x) - leaf.x) / leaf.width - 1;
-    const double t = 2 * (double(p.y) - leaf.y) / leaf.length - 1;
-    const double q = (1 + tree.slope_x[leaf.index] / 128. * s) * (1 + tree.slope_y[leaf.index] / 128. * t);
-    return scale_[slab] * tree.mass[leaf.index] / share * q;
-  }
-
- private:
-  const SamplerData& data_;
-  std::vector<LeafFinder> finders_;
-  std::vector<double> scale_;
 };
 
 }  // namespace
@@ -170,19 +111,20 @@ RatioFunction bound_ratio(AnyBrdf f, const SamplerData& data) {
   const auto bounds = std::make_shared<const Bounds>(data);
   return [bounds, f = std::move(f), &data](std::span<const AttackPoint> points, std::span<double> ratio) {
     const auto channels = std::size_t(f.channels());
+    const bool isotropic = data.frame.isotropic();
     std::vector<ShadingGeometry<float>> geometry;
     std::vector<std::size_t> index;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const float y = float(points[i][2]);
-      const Vec2<float> p{2 * float(points[i][1]) - 1, data.domain.half() ? y : 2 * y - 1};
-      const Direction wo = direction_from_angles(89.999f * (pi / 180) * float(points[i][0]), 0.f);
-      const DomainPoint at = lift(data.domain, wo, p);
+      const Vec2<float> p = square_point(data.domain.symmetry, float(points[i][1]), float(points[i][2]));
+      const float theta = 89.999f * (pi / 180) * float(points[i][0]);
+      const float phi = isotropic ? 0.f : data.frame.axis + 2 * pi * float(points[i][3]);
       ratio[i] = 0;
+      Incidence in;
+      if (!find_incidence(bounds->viewer, direction_from_angles(theta, phi), in)) continue;
+      const DomainPoint at = lift(data.domain, in.wo, p);
       if (!(at.projected_area > 0)) continue;
-      const double albedo = double(albedo_at(data.albedo, wo.z));
-      if (!(albedo > 0)) continue;
-      ratio[i] = double(at.projected_area) / (albedo * bounds->at(wo, p));
-      geometry.push_back(at.geometry), index.push_back(i);
+      ratio[i] = double(at.projected_area) / (double(in.albedo) * bounds->at(in, p));
+      geometry.push_back(known_geometry(in, at.geometry, isotropic)), index.push_back(i);
     }
     std::vector<float> values(geometry.size() * channels);
     f.eval(geometry, values);

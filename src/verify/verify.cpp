@@ -101,7 +101,9 @@ class Hearing {
 
   // How often exact mode may run out of trials in n draws.
   double expected_none(Direction wo, std::uint64_t n) const {
-    const double volume = double(s_.packed->exact.slab_at(std::min(wo.z, 1.f)).volume);
+    Incidence in;
+    if (!find_incidence(s_.packed->viewer, wo, in)) return 0;
+    const double volume = double(s_.packed->exact.slab_at(in).volume);
     return volume > 1 ? double(n) * std::pow(1 - 1 / (1.02 * volume), 256) : 0;
   }
 
@@ -213,6 +215,7 @@ class Hearing {
     if (s_.data) {
       AttackOptions options;
       options.seed = detail::mixed_seed(o_.seed, 8);
+      options.coordinates = s_.data->frame.isotropic() ? 3 : 4;
       if (o_.effort < 1) options.probes = std::size_t(scaled_count(options.probes, 1 << 14));
       attacked = attack(bound_ratio(s_.f, *s_.data), options, host_).worst;
       inform("worst_ratio_under_attack", attacked);
@@ -253,7 +256,11 @@ class Hearing {
 
   void physics() {
     const PhysicsReport report = measure_physics(f_, 20'000, detail::mixed_seed(o_.seed, 12));
-    add(check_isotropy(report, 1e-2));
+    if (s_.packed->viewer.frame.isotropic()) {
+      add(check_isotropy(report, 1e-2));
+    } else {
+      inform("mean_anisotropy", report.isotropy.mean);
+    }
     inform("mean_mirror_asymmetry", report.mirror.mean);
     inform("mean_miss_of_reciprocity", report.reciprocity.mean);
     inform("largest_albedo", report.max_albedo);

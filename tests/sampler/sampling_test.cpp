@@ -165,8 +165,8 @@ TEST(SampleNTwin, RetryingInsideTheLeafIsSeen) {
                albedo = reference_albedo(target_function(f), known).value;
   const PackedSampler& packed = loose().exact.packed();
   Incidence in;
-  ASSERT_TRUE(find_incidence(packed.albedo, known, in));
-  const PackedSlab& slab = packed.exact.slab_at(in.wo.z);
+  ASSERT_TRUE(find_incidence(packed.viewer, known, in));
+  const PackedSlab& slab = packed.exact.slab_at(in);
   Pcg32 u(9);
   const double z = z_score(expected, calls, [&] {
     double sum = 0;

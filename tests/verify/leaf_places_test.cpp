@@ -23,8 +23,8 @@ Suspect drawn_by(const Across& across) {
   const PackedSampler& packed = *s.packed;
   s.propose = [&packed, across](Direction wo, Pcg32& u) -> std::optional<Direction> {
     Incidence in;
-    if (!find_incidence(packed.albedo, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed.one_shot.slab_at(in.wo.z);
+    if (!find_incidence(packed.viewer, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed.one_shot.slab_at(in);
     const auto chosen =
         detail::choose_leaf(slab, packed.one_shot.leaves.data() + slab.first, detail::bits64(u));
     const Vec2<float> t = across(chosen.leaf, u);

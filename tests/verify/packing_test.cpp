@@ -18,7 +18,7 @@ TEST(Packing, IsFaithful) {
 
 TEST(PackingTwin, OneNodeOfTheAlbedo) {
   PackedSampler p = packed();
-  AlbedoPiece& piece = p.albedo.pieces[p.albedo.pieces.size() / 2];
+  AlbedoPiece& piece = p.viewer.albedo.pieces[p.viewer.albedo.pieces.size() / 2];
   piece.base *= 1.003f, piece.slope *= 1.003f;
   EXPECT_TRUE(fails(judge(p), "packed_albedo"));
 }

@@ -45,7 +45,7 @@ Axis log_range(const DiskImage& image, double decades = 5);
 std::string disk_raster(const DiskImage& image, const Axis& range, double x, double y, double side,
                         std::string_view css_class = {}, const Palette& colours = palette());
 
-// The slab of theta_o in a partition over theta_o alone.
+// The slab of a partition that holds theta_o, at azimuth 0.
 std::size_t slab_of(const Partition& partition, Direction wo);
 
 }  // namespace reflectree::draw

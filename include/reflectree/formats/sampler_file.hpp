@@ -10,6 +10,7 @@
 //   EXTR  exact trees: status:u8 volume:f32 tree    ONTR  one-shot trees: tree
 //         tree = nodes (2 bits each) mass:u32... slope_x:i8... slope_y:i8...
 //   ALBD  relative_error:f32 cos_theta_o:f32... albedo:f32...
+//   ANIS  of anisotropic functions: symmetry:u8 axis:f32 stretch:f32 phi_o:f32... (albedos row by row)
 //   PROB  64 probes of the BRDF's target            REPT  what the builder measured (optional)
 //
 // Flag bit 0 marks a chunk that a reader who does not know its tag or version may skip. Lists carry their

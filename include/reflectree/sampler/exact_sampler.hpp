@@ -25,7 +25,8 @@ class ExactSampler {
   static constexpr int max_trials = 256;
 
   ExactSampler(F f, std::shared_ptr<const PackedSampler> packed)
-      : f_(std::move(f)), packed_(std::move(packed)), turned_(is_isotropic_by_formula(f_)) {}
+      : f_(std::move(f)), packed_(std::move(packed)), 
+        turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
 
   const F& brdf() const { return f_; }
   // Whether f is evaluated in the frame where wo has no y, rather than in the caller's.
@@ -35,8 +36,8 @@ class ExactSampler {
   template <RandomBits U, class Stats = NoStatistics>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u, Stats&& stats = {}) const {
     Incidence in;
-    if (!find_incidence(packed_->albedo, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
+    if (!find_incidence(packed_->viewer, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed_->exact.slab_at(in);
     return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
       for (int trial = 0; trial < max_trials; ++trial) {
         const Candidate c = propose(domain, slab, in, u);
@@ -54,8 +55,8 @@ class ExactSampler {
   template <RandomBits U, class Stats = NoStatistics>
   std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out, Stats&& stats = {}) const {
     Incidence in;
-    if (!find_incidence(packed_->albedo, wo, in)) return 0;
-    const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
+    if (!find_incidence(packed_->viewer, wo, in)) return 0;
+    const PackedSlab& slab = packed_->exact.slab_at(in);
     std::size_t filled = 0;
     for (int round = 0; round < max_trials && filled < out.size(); ++round) {
       detail::divide(slab, packed_->exact.leaves.data() + slab.first, out.size() - filled, u,
@@ -74,8 +75,8 @@ class ExactSampler {
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample_once(Direction wo, U& u) const {
     Incidence in;
-    if (!find_incidence(packed_->albedo, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->exact.slab_at(in.wo.z);
+    if (!find_incidence(packed_->viewer, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed_->exact.slab_at(in);
     const Candidate c = propose(packed_->domain, slab, in, u);
     if (!accept(c, in, u, NoStatistics{})) return std::nullopt;
     const float ratio = c.target / in.albedo;
@@ -90,7 +91,7 @@ class ExactSampler {
   // Per projected solid angle: t / a(wo).
   float pdf_disk(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(packed_->albedo, wo, in)) return 0;
+    if (!(wi.z > 0) || !find_incidence(packed_->viewer, wo, in)) return 0;
     const Value value =
         eval(f_, turned_ ? shading_geometry(in.wo, to_incidence(in, wi)) : shading_geometry(wo, wi));
     return packed_->target(value) / in.albedo;
@@ -98,13 +99,13 @@ class ExactSampler {
   // a(wo) of the target, from the table; 0 for no sample.
   float albedo(Direction wo) const {
     Incidence in;
-    return find_incidence(packed_->albedo, wo, in) ? in.albedo : 0.f;
+    return find_incidence(packed_->viewer, wo, in) ? in.albedo : 0.f;
   }
   // sum(V) of the slab of wo: the expected trials, up to the error of the albedo table.
   float expected_trials(Direction wo) const {
     Incidence in;
-    if (!find_incidence(packed_->albedo, wo, in)) return 0;
-    return packed_->exact.slab_at(in.wo.z).volume;
+    if (!find_incidence(packed_->viewer, wo, in)) return 0;
+    return packed_->exact.slab_at(in).volume;
   }
 
  private:

@@ -29,7 +29,8 @@ class OneShotSampler {
   using Value = ValueOf<F>;
 
   OneShotSampler(F f, std::shared_ptr<const PackedSampler> packed)
-      : f_(std::move(f)), packed_(std::move(packed)), turned_(is_isotropic_by_formula(f_)) {}
+      : f_(std::move(f)), packed_(std::move(packed)), 
+        turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
 
   const F& brdf() const { return f_; }
   // Whether f is evaluated in the frame where wo has no y, rather than in the caller's.
@@ -63,8 +64,8 @@ class OneShotSampler {
   template <RandomBits U>
   std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out) const {
     Incidence in;
-    if (out.empty() || !find_incidence(packed_->albedo, wo, in)) return 0;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    if (out.empty() || !find_incidence(packed_->viewer, wo, in)) return 0;
+    const PackedSlab& slab = packed_->one_shot.slab_at(in);
     std::size_t filled = 0;
     detail::divide(
         slab, packed_->one_shot.leaves.data() + slab.first, out.size(), u,
@@ -76,8 +77,8 @@ class OneShotSampler {
   // outside of [0, 1] are no sample.
   std::optional<DirectionSample<Value>> sample(Direction wo, double u1, double u2) const {
     Incidence in;
-    if (!detail::are_uniforms(u1, u2) || !find_incidence(packed_->albedo, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    if (!detail::are_uniforms(u1, u2) || !find_incidence(packed_->viewer, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed_->one_shot.slab_at(in);
     const bool half = packed_->domain.half(), below = half && u2 < 0.5;
     if (half) u2 = below ? 1 - 2 * u2 : 2 * u2 - 1;  // continuous across the plane of incidence
     const DescentNode* node = packed_->one_shot.nodes.data() + slab.first_node;
@@ -107,12 +108,12 @@ class OneShotSampler {
   // The uniforms that `sample(wo, u1, u2)` takes to wi, up to rounding; nullopt below the horizon.
   std::optional<Vec2<double>> invert(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(packed_->albedo, wo, in)) return std::nullopt;
+    if (!(wi.z > 0) || !find_incidence(packed_->viewer, wo, in)) return std::nullopt;
     const bool half = packed_->domain.half();
     Direction local = to_incidence(in, wi);
     const bool below = half && local.y < 0;
     if (half) local.y = abs(local.y);
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    const PackedSlab& slab = packed_->one_shot.slab_at(in);
     const detail::Located at = locate(slab, lower(packed_->domain, in.wo, local));
     return Vec2<double>{at.u1, !half ? at.u2 : below ? 0.5 * (1 - at.u2) : 0.5 * (1 + at.u2)};
   }
@@ -120,12 +121,12 @@ class OneShotSampler {
   // Per solid angle, sr^-1; by point location, without evaluating f.
   float pdf(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(packed_->albedo, wo, in)) return 0;
+    if (!(wi.z > 0) || !find_incidence(packed_->viewer, wo, in)) return 0;
     Direction local = to_incidence(in, wi);
     local = fold(packed_->domain.symmetry, local);
     const Vec2<float> p = lower(packed_->domain, in.wo, local);
     const DomainPoint point = lift(packed_->domain, in.wo, p);
-    return locate(packed_->one_shot.slab_at(in.wo.z), p).density *
+    return locate(packed_->one_shot.slab_at(in), p).density *
            point.geometry.cos_theta_i / point.projected_area;
   }
   // Per projected solid angle.
@@ -142,8 +143,8 @@ class OneShotSampler {
   template <class Made, RandomBits U, class Make>
   REFLECTREE_INLINE std::optional<Made> in_chosen_leaf(Direction wo, U& u, const Make& make) const {
     Incidence in;
-    if (!find_incidence(packed_->albedo, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in.wo.z);
+    if (!find_incidence(packed_->viewer, wo, in)) return std::nullopt;
+    const PackedSlab& slab = packed_->one_shot.slab_at(in);
     const detail::ChosenLeaf leaf =
         detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
     return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {

@@ -11,6 +11,7 @@
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 #include "reflectree/sampler/known/partition.hpp"
+#include "reflectree/sampler/known/viewer_frame.hpp"
 #include "reflectree/sampler/square/domain.hpp"
 #include "reflectree/sampler/square/tree.hpp"
 
@@ -58,6 +59,7 @@ struct BuildReport {
 struct SamplerData {
   std::string material;  // canonical text of the BRDF, for people
   Target target;
+  ViewerFrame frame;
   Domain domain;
   Partition exact_partition;
   std::vector<MajorantTree> exact;  // one per slab

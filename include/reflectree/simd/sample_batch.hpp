@@ -67,11 +67,11 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
       block.count = 0;
       for (; i < wo.size() && !block.full(); ++i) {
         Incidence in;
-        if (!find_incidence(packed.albedo, wo[i], in)) {
+        if (!find_incidence(packed.viewer, wo[i], in)) {
           detail::store_no_sample(values.zero(), out[i]);
           continue;
         }
-        const PackedSlab& slab = packed.one_shot.slab_at(in.wo.z);
+        const PackedSlab& slab = packed.one_shot.slab_at(in);
         const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
         block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half(), u);
       }
@@ -105,7 +105,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
         std::size_t n = 0;
         for (; i < wo.size() && n < side_by_side; ++i) {
           Started& s = started[n];
-          if (!detail::are_uniforms(points[i].x, points[i].y) || !find_incidence(packed.albedo, wo[i], s.in)) {
+          if (!detail::are_uniforms(points[i].x, points[i].y) || !find_incidence(packed.viewer, wo[i], s.in)) {
             detail::store_no_sample(values.zero(), out[i]);
             continue;
           }
@@ -114,7 +114,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
           const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
           s.i = i;
           s.turn = below ? -0.f : 0.f;
-          descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in.wo.z), points[i].x, u2);
+          descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in), points[i].x, u2);
         }
         detail::descend(descents, n);
         for (std::size_t j = 0; j < n; ++j) {
@@ -151,11 +151,11 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
     for (std::size_t i = 0; i < wo.size() || count > 0;) {
       for (; i < wo.size() && count < detail::block_size; ++i) {
         Pending& p = pending[count];
-        if (!find_incidence(packed.albedo, wo[i], p.in)) {
+        if (!find_incidence(packed.viewer, wo[i], p.in)) {
           detail::store_no_sample(values.zero(), out[i]);
           continue;
         }
-        p.slab = &packed.exact.slab_at(p.in.wo.z);
+        p.slab = &packed.exact.slab_at(p.in);
         p.i = i;
         p.trials = 0;
         ++count;

@@ -14,10 +14,12 @@ static_assert(block_size % lane_count == 0);
 
 struct alignas(64) TrialBlock {
   enum Field {
-    sin_theta_o,
+    wo_x,
     cos_theta_o,
+    wo_y,  // of domains that follow the surface
     cos_phi,
     sin_phi,
+    side,
     albedo,  // Incidence
     x,
     y,
@@ -59,10 +61,12 @@ struct alignas(64) TrialBlock {
   REFLECTREE_INLINE std::size_t add(std::size_t i, const Incidence& in, const PackedLeaf& leaf, bool half) {
     const std::size_t k = count++;
     index[k] = std::uint32_t(i);
-    at[sin_theta_o][k] = in.wo.x;
+    at[wo_x][k] = in.wo.x;
+    at[wo_y][k] = in.wo.y;
     at[cos_theta_o][k] = in.wo.z;
     at[cos_phi][k] = in.cos_phi;
     at[sin_phi][k] = in.sin_phi;
+    at[side][k] = in.side;
     at[albedo][k] = in.albedo;
     if (keep_known) at[known_x][k] = in.known.x, at[known_y][k] = in.known.y, at[known_z][k] = in.known.z;
     const LeafCell<float> cell = unpack(leaf, half);
@@ -110,13 +114,15 @@ REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Value
     Lanes tx = lanes(Field::across_x);
     if constexpr (across_x == AcrossX::uniform) tx = sample_linear(cell.slope_x, tx);
     const PointInLeafT<Lanes> at = point_at(cell, tx, sample_linear(cell.slope_y, lanes(Field::across_y)));
-    const Vec3<Lanes> wo{lanes(Field::sin_theta_o), Lanes(0), lanes(Field::cos_theta_o)};
+    const bool surface = domain.follows_surface();
+    const Vec3<Lanes> wo{lanes(Field::wo_x), surface ? lanes(Field::wo_y) : Lanes(0), lanes(Field::cos_theta_o)};
     const DomainPointT<Lanes> point =
         lift_point(domain, wo, Vec2<Lanes>{at.p.x, flip_sign(at.p.y, lanes(Field::turn))});
     const Vec3<Lanes>& wi = point.geometry.wi;
     const Lanes cos_phi = lanes(Field::cos_phi), sin_phi = lanes(Field::sin_phi);
     const auto turn_back = [&](const Vec3<Lanes>& w) {
-      return Vec3<Lanes>{w.x * cos_phi - w.y * sin_phi, w.x * sin_phi + w.y * cos_phi, w.z};
+      const Lanes y = b.keep_known ? flip_sign(w.y, lanes(Field::side)) : w.y;
+      return Vec3<Lanes>{w.x * cos_phi - y * sin_phi, w.x * sin_phi + y * cos_phi, w.z};
     };
     const Vec3<Lanes> drawn = turn_back(wi);
     b.set(Field::wi_x, k, drawn.x);

@@ -13,8 +13,9 @@
 
 namespace reflectree {
 
-// Coordinates in [0, 1]: elevation of wo, then the place of wi in whatever map the sampler uses.
-using AttackPoint = std::array<double, 3>;
+// Coordinates in [0, 1]: elevation of wo, the place of wi in whatever map the sampler uses, and, where the
+// function is anisotropic, the azimuth of wo.
+using AttackPoint = std::array<double, 4>;
 // ratio[i] = T / (a M) at points[i]: above 1 the bound is exceeded.
 using RatioFunction = std::function<void(std::span<const AttackPoint> points, std::span<double> ratio)>;
 
@@ -22,6 +23,7 @@ struct AttackOptions {
   std::size_t probes = 1 << 18;  // scrambled Sobol' points, from the best of which local searches start
   std::size_t climbs = 256;
   int steps = 60;  // of each local search
+  int coordinates = 3;
   std::uint64_t seed = 1;
 };
 struct AttackResult {

@@ -17,15 +17,16 @@ namespace {
 // with.
 class TableBuilder {
  public:
-  TableBuilder(const Field& field, float relative_error, const std::vector<float>& jumps, const Host& host,
-               Effort& effort)
+  TableBuilder(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
+               const Host& host, Effort& effort, std::uint64_t budget)
       : field_(field),
+        phi_o_(phi_o),
         host_(host),
         effort_(effort),
         error_(double(relative_error)),
         known_(field.f.traits().theta_o_factor),
         start_(effort.evaluations),
-        budget_(effort.limit / 3),
+        budget_(budget),
         apart_{0, effort.limit} {
     std::vector<double> borders = first_borders(field.f.traits());
     for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
@@ -61,14 +62,14 @@ class TableBuilder {
         }
       }
       std::vector<double> misses =
-          misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress});
+          misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress, phi_o_});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
         if (misses[i] > accepted * error_) doubtful.push_back(cosines[i]);
       }
       const std::vector<double> decided =
-          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress});
+          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress, phi_o_});
       double worst = 0;
       std::vector<Panel> missed;
       for (std::size_t i = 0, d = 0; i < cosines.size(); ++i) {
@@ -197,7 +198,8 @@ class TableBuilder {
     std::vector<float> cosines;
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
     const Integrals a =
-        integrate(field_, cosines, {cubature_error(), 8, 4, rim_, progress, progress_end}, host_, effort_);
+        integrate(field_, cosines, {cubature_error(), 8, 4, rim_, progress, progress_end, phi_o_},
+                                  host_, effort_);
     for (std::size_t i = 0; i < thetas.size(); ++i) nodes_[thetas[i]] = a.values[i] / factor(thetas[i]);
     worst_ = max(worst_, a.error);
   }
@@ -226,6 +228,7 @@ class TableBuilder {
   }
 
   const Field& field_;
+  const float phi_o_;
   const Host& host_;
   Effort& effort_;
   double error_;
@@ -240,12 +243,82 @@ class TableBuilder {
 
 }  // namespace
 
-AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
-                         std::uint64_t seed, const Host& host, Effort& effort) {
-  TableBuilder builder(field, relative_error, jumps, host, effort);
+namespace {
+
+// The table at one azimuth of the viewer.
+AlbedoTable build_row(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
+                      std::uint64_t seed, const Host& host, Effort& effort, std::uint64_t budget) {
+  TableBuilder builder(field, phi_o, relative_error, jumps, host, effort, budget);
   builder.refine();
   builder.check(seed);
   return builder.table();
+}
+
+// By how much lines between every second row miss the rows between them, relatively, at most.
+float miss_of_lines(const std::vector<AlbedoTable>& rows) {
+  float worst = 0;
+  for (std::size_t k = 1; k + 1 < rows.size(); k += 2) {
+    for (std::size_t i = 0; i < rows[k].cos_theta_o.size(); ++i) {
+      const float c = rows[k].cos_theta_o[i], a = rows[k].albedo[i];
+      const float line = 0.5f * (albedo_at(rows[k - 1], c) + albedo_at(rows[k + 1], c));
+      const float allowance = c < 1.745e-3f ? 10.f : 1.f;  // beyond 89.9 degrees
+      if (max(a, line) > 0) worst = max(worst, abs(line - a) / max(a, line) / allowance);
+    }
+  }
+  return worst;
+}
+
+// All rows over the nodes of any of them: lines in the cosine stay what they are.
+AlbedoTable joined(const std::vector<AlbedoTable>& rows, float span) {
+  AlbedoTable table;
+  for (const AlbedoTable& row : rows) {
+    table.cos_theta_o.insert(table.cos_theta_o.end(), row.cos_theta_o.begin(), row.cos_theta_o.end());
+    table.relative_error = max(table.relative_error, row.relative_error);
+  }
+  std::sort(table.cos_theta_o.begin(), table.cos_theta_o.end());
+  table.cos_theta_o.erase(std::unique(table.cos_theta_o.begin(), table.cos_theta_o.end()),
+                          table.cos_theta_o.end());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    table.phi_o.push_back(span * (float(k) / float(rows.size() - 1)));
+    for (const float c : table.cos_theta_o) table.albedo.push_back(albedo_at(rows[k], c));
+  }
+  return table;
+}
+
+}  // namespace
+
+AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
+                         std::uint64_t seed, const Host& host, Effort& effort) {
+  const std::uint64_t budget = effort.limit / 3;
+  if (field.frame.isotropic()) return build_row(field, 0, relative_error, jumps, seed, host, effort, budget);
+  // Rows at equidistant azimuths, twice as many until the lines between them are good enough: their error
+  // falls to a quarter each time.
+  constexpr std::size_t most_rows = 257;
+  constexpr float stated_share = 0.4f;
+  const float span = azimuth_span(field.frame.symmetry), row_error = 0.5f * relative_error;
+  const std::uint64_t start = effort.evaluations;
+  std::vector<AlbedoTable> rows;
+  const auto row_at = [&](std::size_t k, std::size_t count) {
+    return build_row(field, span * (float(k) / float(count - 1)), row_error, jumps, seed, host, effort, budget / 8);
+  };
+  constexpr std::size_t first = 5;
+  for (std::size_t k = 0; k < first; ++k) rows.push_back(row_at(k, first));
+  float miss = miss_of_lines(rows);
+  for (;;) {
+    const bool spent = effort.evaluations - start > budget;
+    // The lines of all rows miss a quarter of what those of every second row do; some more is stated.
+    if (stated_share * miss <= 0.5f * relative_error || rows.size() >= most_rows || spent) break;
+    std::vector<AlbedoTable> finer;
+    const std::size_t count = 2 * rows.size() - 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2]) : row_at(k, count));
+    }
+    rows = std::move(finer);
+    miss = miss_of_lines(rows);
+  }
+  AlbedoTable table = joined(rows, span);
+  table.relative_error = min(max(table.relative_error + stated_share * miss, relative_error), 1.f);
+  return table;
 }
 
 }  // namespace reflectree::detail

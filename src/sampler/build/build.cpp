@@ -37,7 +37,7 @@ std::vector<FieldPoint> highest_places(const std::vector<Slab>& slabs) {
     for (const Node& node : order[k]->nodes) {
       if (node.split == TreeSplit::leaf && (!highest || node.leaf.seen > highest->seen)) highest = &node.leaf;
     }
-    if (highest && highest->seen > 0) places.push_back({cos(highest->seen_theta), highest->seen_at});
+    if (highest && highest->seen > 0) places.push_back({viewer_at(highest->seen_by), highest->seen_at});
   }
   return places;
 }
@@ -66,9 +66,7 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   host.progress(0.87f);
   host.stage("cross-examining");
   const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
-  const Direction wi = fold(field.domain.symmetry, seen.brightest_wi);
-  const FieldPoint brightest{seen.brightest_wo.z,
-                             lower(field.domain, wo_from_cosine(seen.brightest_wo.z), wi)};
+  const FieldPoint brightest{seen.brightest_wo, field.place_of(seen.brightest_wo, seen.brightest_wi)};
   attempt.seen = cross_examine(attempt.exact, apart, brightest, options.seed);
   attempt.seen.towers = std::move(towers);
   if (attempt.seen.towers.empty() && disagrees(attempt.seen, attempt.albedo))
@@ -104,6 +102,15 @@ void refuse_unfit_domain(const AlbedoTable& albedo, const Field& fit, const Host
   }
 }
 
+// Throws Error for a domain that is not of the kind of functions that f is.
+void check_domain(const Domain& domain, const ViewerFrame& frame, const std::string& name) {
+  const std::string kind = name_of(domain.kind);
+  if (frame.isotropic() && domain.kind == DomainKind::slope_star) {
+    throw Error("the domain " + kind + " is one of anisotropic functions, and the function is isotropic", name,
+                "ask for half_vector, or leave the domain to the builder");
+  }
+}
+
 }  // namespace
 
 SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host& the_host) {
@@ -125,8 +132,10 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     // A quarter is left for one-shot trees.
     Effort effort{0, options.max_evaluations / 4 * 3};
     host.stage("choosing the domain");
-    const Domain domain = options.domain ? *options.domain : choose_domain(f, options, seen, ridges, host);
-    const Field field{f, options.target, domain, domain.half() && !seen.mirror_symmetric, ridges};
+    if (options.domain) check_domain(*options.domain, seen.frame, f.traits().name);
+    Domain domain = options.domain ? *options.domain : choose_domain(f, options, seen, ridges, host);
+    if (!seen.frame.isotropic()) domain.symmetry = Symmetry::none;
+    const Field field{f, options.target, domain, domain.half() && !seen.mirror_symmetric, ridges, seen.frame};
     Attempt attempt = attempt_exact(field, seen, options, effort, host, data.report);
     if (n < max_attempts && evaluations < options.max_evaluations && !effort.spent() &&
         disagrees(attempt.seen, attempt.albedo)) {
@@ -139,7 +148,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     refuse_albedo_out_of_range(attempt.albedo, data.target, f.traits().name);
     if (options.domain) {
       const Domain own = choose_domain(f, options, seen, ridges, host);
-      const Field fit{f, options.target, own, own.half() && !seen.mirror_symmetric, ridges};
+      const Field fit{f, options.target, own, own.half() && !seen.mirror_symmetric, ridges, seen.frame};
       refuse_unfit_domain(attempt.albedo, fit, host);
     }
     refuse_disagreement(attempt.seen, attempt.albedo, field, effort.spent());
@@ -150,7 +159,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     // Bounds are a density, too: where the effort did not reach for a better one, they serve.
     if (effort.spent() && worst_variance(attempt.one_shot) > options.expected_trials - 1)
       attempt.one_shot = attempt.exact;
-    data.domain = domain;
+    data.frame = seen.frame, data.domain = domain;
     data.albedo = attempt.albedo;
     data.exact_partition = partition_of(attempt.exact);
     for (const Slab& slab : attempt.exact) data.exact.push_back(majorant_tree(slab));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "canonical.hpp"
 #include "reflectree/math/random.hpp"
-#include "reflectree/sampler/known/albedo.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree::detail {
@@ -16,10 +16,11 @@ namespace {
 constexpr float surprising = 2;  // times the bound
 constexpr std::size_t most_surprises = 8;
 
-const Slab& slab_of(const std::vector<Slab>& slabs, float theta) {
-  const auto upper = std::upper_bound(slabs.begin(), slabs.end(), theta,
-                                      [](float t, const Slab& slab) { return t < slab.theta_lo; });
-  return upper == slabs.begin() ? slabs.front() : *(upper - 1);
+// The share of all viewers, uniform in the known coordinates, that are in the slab.
+double share_of_viewers(const Slab& slab, const Field& field) {
+  double share = double(slab.box.width(0)) / double(theta_max);
+  if (slab.box.axes > 1) share *= double(slab.box.width(1)) / double(azimuth_span(field.frame.symmetry));
+  return share;
 }
 
 const Leaf& leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain) {
@@ -45,17 +46,20 @@ struct Mean {
 };
 
 // Two of three probes uniform over the hemisphere, the third over the square.
-std::vector<FieldPoint> probes(const Domain& domain, std::size_t count, Pcg32& u) {
+std::vector<FieldPoint> probes(const Field& field, std::size_t count, Pcg32& u) {
+  const Domain& domain = field.domain;
   std::vector<FieldPoint> points;
   for (std::size_t i = 0; i < count; ++i) {
     const float theta = theta_max * to_unit_float(u());
-    const float c = clamp(cos(theta), min_cos_theta_o, 1.f), a = to_unit_float(u()), b = to_unit_float(u());
+    const float a = to_unit_float(u()), b = to_unit_float(u());
+    const float phi_o = field.axes() > 1 ? azimuth_span(field.frame.symmetry) * to_unit_float(u()) : 0.f;
+    const Direction wo = viewer_at({theta, phi_o});
     if (i % 3 == 0) {
-      points.push_back({c, square_point(domain.symmetry, a, b)});
+      points.push_back({wo, square_point(domain.symmetry, a, b)});
       continue;
     }
     const float z = max(b, 1e-4f), r = sqrt(1 - z * z), phi = (domain.half() ? pi : 2 * pi) * a;
-    points.push_back({c, lower(domain, wo_from_cosine(c), {r * cos(phi), r * sin(phi), z})});
+    points.push_back({wo, field.place_of(wo, {r * cos(phi), r * sin(phi), z})});
   }
   return points;
 }
@@ -74,8 +78,9 @@ void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain,
     const Box box = box_of(leaf.cell, domain);
     const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
                         box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
-    const float theta = linear_mix(to_unit_float(u()), slab.theta_lo, slab.theta_hi);
-    points.push_back({clamp(cos(theta), min_cos_theta_o, 1.f), p});
+    Known share{};
+    for (int axis = 0; axis < slab.box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
+    points.push_back({viewer_at(slab.box.at(share)), p});
     bounds.push_back(leaf.height * shape(leaf, box, p));
   }
 }
@@ -89,21 +94,21 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   Pcg32 u(seed, 23);
   CrossExamination result;
 
-  std::vector<FieldPoint> points = probes(domain, probe_count, u);
+  const Partition partition = partition_of(slabs);
+  std::vector<FieldPoint> points = probes(survey.field, probe_count, u);
   points.push_back(brightest);
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (survey.at_jump(points[i].cos_theta_o)) continue;
-    const float a = albedo_at(survey.albedo, points[i].cos_theta_o);
-    const float theta = acos(points[i].cos_theta_o);
+    if (survey.at_jump(points[i].wo)) continue;
+    const float a = survey.albedo_at(points[i].wo);
     if (!(values[i].upper > 0)) continue;
-    const Leaf& leaf = leaf_at(slab_of(slabs, theta), points[i].p, domain);
+    const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
+    const Leaf& leaf = leaf_at(slabs[find_slab(partition, known)], points[i].p, domain);
     const float bound = leaf.height * shape(leaf, box_of(leaf.cell, domain), points[i].p);
     const float ratio = a > 0 ? values[i].upper / (a * bound) : std::numeric_limits<float>::infinity();
     if (!(ratio > surprising)) continue;
-    const Direction wo = wo_from_cosine(points[i].cos_theta_o);
-    result.surprises.push_back({points[i].cos_theta_o, lift(domain, wo, points[i].p).geometry.wi, ratio});
+    result.surprises.push_back({points[i].wo, survey.field.direction_at(points[i]), ratio});
   }
   std::stable_sort(result.surprises.begin(), result.surprises.end(),
                    [](const Surprise& a, const Surprise& b) { return a.ratio > b.ratio; });
@@ -115,7 +120,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   std::vector<std::size_t> first;
   for (const Slab& slab : slabs) {
     first.push_back(points.size());
-    const auto share = double(slab.theta_hi - slab.theta_lo) / double(theta_max);
+    const double share = share_of_viewers(slab, survey.field);
     draw_from_bounds(slab, 16 + std::size_t(share * double(draw_count)), domain, u, points, bounds);
   }
   first.push_back(points.size());
@@ -127,14 +132,14 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
     const auto volume = double(total(slabs[s], &Leaf::cost));
     Mean once, accepted;
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) {
-      const float a = albedo_at(survey.albedo, points[i].cos_theta_o);
-      if (!(a > 0) || survey.at_jump(points[i].cos_theta_o)) continue;
+      const float a = survey.albedo_at(points[i].wo);
+      if (!(a > 0) || survey.at_jump(points[i].wo)) continue;
       // Of mirror images on half a square one is drawn: their mean is what is accepted.
       const double ratio = double(values[i].mean) / (double(a) * double(bounds[i]));
       once.add(volume * ratio), accepted.add(volume * std::min(ratio, 1.));
     }
     if (once.count == 0) continue;
-    const auto w = double(slabs[s].theta_hi - slabs[s].theta_lo);
+    const double w = share_of_viewers(slabs[s], survey.field);
     weights += w;
     result.by_bounds += w * once.mean(), result.accepted += w * accepted.mean();
     error2 += w * w * once.error() * once.error();

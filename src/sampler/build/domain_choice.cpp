@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The domain with the fewest leaves, by trial.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "examine.hpp"
@@ -31,7 +32,7 @@ float folding_cost(const std::vector<Slab>& slabs, const Field& field, std::uint
       const Box box = box_of(leaf.cell, field.domain);
       for (cost += double(leaf.cost); next < cost; next += step) {
         points.push_back(
-            {slab.views[slab.views.size() / 2].cos_theta_o,
+            {slab.views[slab.views.size() / 2].wo,
              {box.x0 + box.width * to_unit_float(u()), box.y0 + box.height * to_unit_float(u())}});
         weight.push_back(1 / double(leaf.height));
       }
@@ -48,48 +49,92 @@ float folding_cost(const std::vector<Slab>& slabs, const Field& field, std::uint
 
 }  // namespace
 
-Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examination& seen,
-                     const std::vector<Ridge>& ridges, const Host& host) {
+namespace {
+
+// Thin boxes of known coordinates from the normal to grazing.
+std::vector<KnownBox> trial_boxes(const ViewerFrame& frame) {
   constexpr float degree = pi / 180;
   constexpr struct {
     float theta, width;
   } trials[] = {{2, 3}, {20, 3}, {40, 3}, {60, 3}, {75, 2}, {84, 1}, {88.5f, 0.5f}};
-  const Symmetry symmetry = seen.asymmetry <= half_square_up_to ? Symmetry::mirror : Symmetry::none;
-  const AlbedoTable flat{{min_cos_theta_o, 1}, {1, 1}, 0};
-  // A coarser goal, and no slab is halved: what theta_o costs is counted in.
+  std::vector<KnownBox> boxes;
+  for (const auto& t : trials) {
+    const float lo = t.theta * degree, hi = (t.theta + t.width) * degree;
+    if (frame.isotropic()) {
+      boxes.push_back({{lo, 0}, {hi, 0}, 1});
+      continue;
+    }
+    const float span = azimuth_span(frame.symmetry), across = min(10 * degree, 0.1f * span);
+    for (const float share : {0.08f, 0.5f, 0.85f}) {
+      boxes.push_back({{lo, share * span}, {hi, share * span + across}, 2});
+    }
+  }
+  return boxes;
+}
+
+std::vector<Domain> candidates(const Examination& seen) {
+  if (seen.frame.isotropic()) {
+    const Symmetry symmetry = seen.asymmetry <= half_square_up_to ? Symmetry::mirror : Symmetry::none;
+    return {{DomainKind::half_vector, symmetry, 0},   {DomainKind::equal_area, symmetry, 0},
+            {DomainKind::projected_disk, symmetry, 0}, {DomainKind::back_vector, symmetry, 0},
+            {DomainKind::stretched, symmetry, 1.5f},   {DomainKind::mirror_vector, symmetry, 0},
+            {DomainKind::normal_vector, symmetry, 0}};
+  }
+  std::vector<Domain> list;
+  // The measured stretch, and milder ones: what lies beside the lobe may ask for less.
+  for (const float part : {1.f, 0.7f, 0.4f, 0.f}) {
+    const float stretch = std::pow(seen.stretch, part);
+    if (list.empty() || stretch < 0.9f * list.back().stretch)
+      list.push_back({DomainKind::slope_star, Symmetry::none, 0, stretch});
+  }
+  for (const DomainKind kind : {DomainKind::half_vector, DomainKind::equal_area, DomainKind::projected_disk,
+                                DomainKind::back_vector, DomainKind::mirror_vector, DomainKind::normal_vector}) {
+    list.push_back({kind, Symmetry::none, 0});
+  }
+  list.push_back({DomainKind::stretched, Symmetry::none, 1.5f});
+  return list;
+}
+
+}  // namespace
+
+Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examination& seen,
+                     const std::vector<Ridge>& ridges, const Host& host) {
+  AlbedoTable flat{{min_cos_theta_o, 1}, {1, 1}, 0};
+  // A coarser goal, and no slab is halved: what the known coordinates cost is counted in.
   const float goal = 1 + 2 * (options.expected_trials - 1);
   GrowthRules rules{goal, 1, 2000, false, true, analyse_exact, 1e30f};
+  const std::vector<KnownBox> boxes = trial_boxes(seen.frame);
+  if (!seen.frame.isotropic()) {
+    flat.phi_o = {0, azimuth_span(seen.frame.symmetry)}, flat.albedo = {1, 1, 1, 1};
+  }
   Domain best;
   std::vector<Slab> best_slabs;
   float least = 1e30f;
   double best_mass = 0;
-  for (const Domain domain :
-       {Domain{DomainKind::half_vector, symmetry, 0}, Domain{DomainKind::equal_area, symmetry, 0},
-        Domain{DomainKind::projected_disk, symmetry, 0}, Domain{DomainKind::back_vector, symmetry, 0},
-        Domain{DomainKind::stretched, symmetry, 1.5f}, Domain{DomainKind::mirror_vector, symmetry, 0},
-        Domain{DomainKind::normal_vector, symmetry, 0}}) {
-    const Field field{f, seen.target, domain, domain.half() && !seen.mirror_symmetric, ridges};
+  for (const Domain& domain : candidates(seen)) {
+    const Field field{f, seen.target, domain, domain.half() && !seen.mirror_symmetric, ridges, seen.frame};
     std::vector<Slab> slabs;
-    for (const auto& t : trials)
-      slabs.push_back(make_slab(t.theta * degree, (t.theta + t.width) * degree, flat, field));
+    for (const KnownBox& box : boxes) slabs.push_back(make_slab(box, flat, field));
     Effort effort{0, options.max_evaluations / 20};
     grow(slabs, {field, flat, host, effort}, rules);
     float price = 0;
     double mass = 0;  // what the domain's grids saw: one that oversaw a lobe is cheap for that reason
     for (const Slab& slab : slabs) {
-      double cost = 0, ideal = 0, theta_cost = 0;
+      double cost = 0, ideal = 0;
+      std::array<double, 2> known_cost{};
       float leaves = 0;
       for (const Node& node : slab.nodes) {
         if (node.split != TreeSplit::leaf) continue;
-        cost += double(node.leaf.cost), ideal += double(node.leaf.ideal),
-            theta_cost += double(node.leaf.theta_cost);
+        cost += double(node.leaf.cost), ideal += double(node.leaf.ideal);
+        for (std::size_t a = 0; a < known_cost.size(); ++a) known_cost[a] += double(node.leaf.known_cost[a]);
         ++leaves;
       }
       if (!(ideal > 0)) continue;
       mass += ideal;
       const float budget = goal - 1;
       const float missed = max(1.f, float((cost - ideal) / ideal) / budget);
-      const float narrower = max(1.f, float(theta_cost / ideal) / (0.4f * budget));
+      float narrower = 1;
+      for (const double saved : known_cost) narrower *= max(1.f, float(saved / ideal) / (0.4f * budget));
       price += leaves * missed * missed * narrower;
     }
     const bool blind = mass == 0 && best_mass > 0, sees_more = mass > 0 && best_mass == 0;
@@ -100,7 +145,7 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
   }
   // Leaves grow as 1 / (what is left of the trials allowed): past half of them a whole square is cheaper.
   if (best.half() && !seen.mirror_symmetric) {
-    const Field field{f, seen.target, best, true, ridges};
+    const Field field{f, seen.target, best, true, ridges, seen.frame};
     const float cost = folding_cost(best_slabs, field, options.seed);
     if (!(cost < 0.5f * (options.expected_trials - 1))) best.symmetry = Symmetry::none;
   }

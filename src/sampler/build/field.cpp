@@ -16,7 +16,45 @@ namespace {
 
 constexpr std::size_t block = 512;  // points evaluated by one call
 
+struct Turn {
+  float cosine = 1, sine = 0;
+};
+// From the frame in which the domain sees wo to the viewer's.
+Turn turn_of(const Field& field, Direction wo) {
+  if (field.frame.isotropic() || field.domain.follows_surface()) return {};
+  const float sine = sqrt(wo.x * wo.x + wo.y * wo.y);
+  return sine > 0 ? Turn{wo.x / sine, wo.y / sine} : Turn{};
+}
+// wo as the domain sees it.
+Direction seen_by_domain(const Field& field, Direction wo) {
+  if (field.frame.isotropic() || field.domain.follows_surface()) return wo;
+  return {sqrt(wo.x * wo.x + wo.y * wo.y), 0, wo.z};
+}
+
+// In the caller's frame.
+ShadingGeometry<float> geometry_for_caller(const Field& field, const FieldPoint& point,
+                                           const ShadingGeometry<float>& g) {
+  const Turn t = turn_of(field, point.wo);
+  const auto turned = [&](Direction w) { return field.to_caller(turn(w, t.cosine, t.sine)); };
+  return {field.to_caller(point.wo), turned(g.wi),  turned(g.wh), g.cos_theta_o,
+          g.cos_theta_i,             g.cos_theta_h, g.cos_theta_d};
+}
+
 }  // namespace
+
+Direction Field::to_caller(Direction w) const {
+  return frame.isotropic() ? w : turn(w, cos(frame.axis), sin(frame.axis));
+}
+
+Vec2<float> Field::place_of(Direction wo, Direction wi) const {
+  const Turn t = turn_of(*this, wo);
+  return lower(domain, seen_by_domain(*this, wo), fold(domain.symmetry, turn(wi, t.cosine, -t.sine)));
+}
+
+Direction Field::direction_at(const FieldPoint& point) const {
+  const Turn t = turn_of(*this, point.wo);
+  return turn(lift(domain, seen_by_domain(*this, point.wo), point.p).geometry.wi, t.cosine, t.sine);
+}
 
 void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
   const int channels = f.channels();
@@ -28,8 +66,9 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
     const std::size_t count = end - begin;
     for (std::size_t k = 0; k < count; ++k) {
       const FieldPoint& point = points[begin + k];
-      const DomainPoint q = lift(domain, wo_from_cosine(point.cos_theta_o), point.p);
-      geometry[k * images] = q.geometry, area[k] = q.projected_area;
+      const DomainPoint q = lift(domain, seen_by_domain(*this, point.wo), point.p);
+      geometry[k * images] = frame.isotropic() ? q.geometry : geometry_for_caller(*this, point, q.geometry);
+      area[k] = q.projected_area;
       if (!both_sides) continue;
       ShadingGeometry<float>& mirrored = geometry[k * images + 1] = q.geometry;
       mirrored.wi.y = -mirrored.wi.y, mirrored.wh.y = -mirrored.wh.y;
@@ -51,29 +90,30 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   }
 }
 
-std::vector<Landmark> Field::landmarks(float cos_theta_o) const {
+std::vector<Landmark> Field::landmarks(Direction wo) const {
   constexpr float coarse = 1.f / 128;
-  const Direction wo = wo_from_cosine(cos_theta_o);
-  const auto place = [&](Direction wi) {
-    return lower(domain, wo, fold(domain.symmetry, wi));
-  };
   std::vector<Landmark> places;
-  for (const Direction& wi : {Direction{-wo.x, 0, wo.z}, wo})
-    places.push_back({lower(domain, wo, wi), {coarse, coarse}});
+  for (const Direction& wi : {Direction{-wo.x, -wo.y, wo.z}, wo})
+    places.push_back({place_of(wo, wi), {coarse, coarse}});
   std::vector<SharpLobe> lobes;
-  if (f.traits().sharp) lobes = f.traits().sharp(wo);
+  if (f.traits().sharp) {
+    lobes = f.traits().sharp(to_caller(wo));
+    for (SharpLobe& lobe : lobes) {
+      if (!frame.isotropic()) lobe.centre = turn(lobe.centre, cos(frame.axis), -sin(frame.axis));
+    }
+  }
   for (const Ridge& ridge : ridges) {
-    if (const auto lobe = ridge.at(acos(min(cos_theta_o, 1.f)))) lobes.push_back(*lobe);
+    if (const auto lobe = ridge.at(theta_of_viewer(wo))) lobes.push_back(*lobe);
   }
   for (const SharpLobe& lobe : lobes) {
     if (!(lobe.centre.z > 0) || !(lobe.width > 0)) continue;
-    const LocalFrame<float> frame = frame_from_normal(lobe.centre);
-    Landmark at{place(lobe.centre), {0, 0}};
+    const LocalFrame<float> around = frame_from_normal(lobe.centre);
+    Landmark at{place_of(wo, lobe.centre), {0, 0}};
     // How far the square's coordinates reach over the lobe, along two directions; azimuths that wrap are far.
-    for (const Direction& tangent : {frame.s, frame.t}) {
+    for (const Direction& tangent : {around.s, around.t}) {
       const Direction beside = normalize(lobe.centre + min(lobe.width, 0.5f) * tangent);
       if (!(beside.z > 0)) continue;
-      const Vec2<float> q = place(beside);
+      const Vec2<float> q = place_of(wo, beside);
       at.size = {max(at.size.x, abs(q.x - at.p.x)), max(at.size.y, abs(q.y - at.p.y))};
     }
     at.size = {clamp(at.size.x, 0x1p-15f, coarse), clamp(at.size.y, 0x1p-15f, coarse)};
@@ -82,9 +122,14 @@ std::vector<Landmark> Field::landmarks(float cos_theta_o) const {
   return places;
 }
 
-bool Survey::at_jump(float cos_theta_o) const {
+float Survey::albedo_at(Direction wo) const {
+  if (field.frame.isotropic()) return reflectree::albedo_at(albedo, wo.z);
+  return reflectree::albedo_at(albedo, wo.z, azimuth_of(wo));
+}
+
+bool Survey::at_jump(Direction wo) const {
   if (!jumps || jumps->empty()) return false;
-  const float theta = acos(min(cos_theta_o, 1.f));
+  const float theta = theta_of_viewer(wo);
   return std::any_of(jumps->begin(), jumps->end(), [theta](float jump) {
     return abs(theta - jump) < 4e-6f + 4e-7f / sin(max(jump, 1e-3f));
   });

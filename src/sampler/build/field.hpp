@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The builder's view of a BRDF: T(cos_theta_o, x, y) over the square of a domain, evaluated in batches, and
+// The builder's view of a BRDF: T(wo, x, y) over the square of a domain, evaluated in batches, and
 // what all steps of a build share.
 #pragma once
 
@@ -12,12 +12,14 @@
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
+#include "known_box.hpp"
 #include "ridge.hpp"
 
 namespace reflectree::detail {
 
+// A viewer, in its frame (viewer_frame.hpp), and a point of the square.
 struct FieldPoint {
-  float cos_theta_o;
+  Direction wo;
   Vec2<float> p;
 };
 
@@ -26,10 +28,6 @@ struct FieldPoint {
 struct FieldValue {
   float mean, upper;
 };
-
-inline Direction wo_from_cosine(float cos_theta_o) {
-  return {sqrt(max((1 - cos_theta_o) * (1 + cos_theta_o), 0.f)), 0, cos_theta_o};
-}
 
 // A place of the square where f may hide a needle that a grid steps over, and how small it is there, in
 // coordinates of the square.
@@ -44,12 +42,19 @@ struct Field {
   Domain domain;
   bool both_sides = false;         // evaluate the mirror image too
   std::vector<Ridge> ridges = {};  // sharp lobes that f did not tell of and that were met all the same
+  ViewerFrame frame = {};
 
+  int axes() const { return frame.isotropic() ? 1 : 2; }  // of the known coordinates
   // Throws Error, naming the directions, for a value that is negative, NaN or infinite.
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const;
+  // The place of wi in the square, and back; both directions in the viewer's frame.
+  Vec2<float> place_of(Direction wo, Direction wi) const;
+  Direction direction_at(const FieldPoint& point) const;
+  // From the viewer's frame to the caller's.
+  Direction to_caller(Direction w) const;
   // The mirror direction of wo, wo itself, and the sharp lobes that f tells of; the same number, in the same
   // order, for every wo for which f tells of as many.
-  std::vector<Landmark> landmarks(float cos_theta_o) const;
+  std::vector<Landmark> landmarks(Direction wo) const;
 };
 
 // What a build may cost, and has.
@@ -71,8 +76,9 @@ struct Survey {
   const std::vector<float>* jumps = nullptr;  // of theta_o
   std::vector<FieldPoint>* towers = nullptr;  // where the attack met values far above a bound are noted here
 
+  float albedo_at(Direction wo) const;
   // Between the two sides of a jump, 1e-6 wide, the albedo is a ramp that belongs to neither.
-  bool at_jump(float cos_theta_o) const;
+  bool at_jump(Direction wo) const;
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
     eval_in_parallel(field, host, effort, points, out);
   }

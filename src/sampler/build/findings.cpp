@@ -44,15 +44,13 @@ std::pair<const Slab*, double> worst_of(const std::vector<Slab>& slabs, const Wh
 
 bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExamination& seen) {
   constexpr std::size_t most = 16;
+  if (!field.frame.isotropic()) return false;  // ridges are followed over theta_o alone
   bool added = false;
   std::vector<Surprise> surprises = seen.surprises;
-  for (const FieldPoint& p : seen.towers) {
-    surprises.push_back(
-        {p.cos_theta_o, lift(field.domain, wo_from_cosine(p.cos_theta_o), p.p).geometry.wi, 1});
-  }
+  for (const FieldPoint& p : seen.towers) surprises.push_back({p.wo, field.direction_at(p), 1});
   for (const Surprise& surprise : surprises) {
     if (ridges.size() >= most) break;
-    const float theta = acos(min(surprise.cos_theta_o, 1.f));
+    const float theta = theta_of_viewer(surprise.wo);
     const bool known = std::any_of(ridges.begin(), ridges.end(), [&](const Ridge& ridge) {
       const auto lobe = ridge.at(theta);
       return lobe && distance(lobe->centre, surprise.wi) < 8 * lobe->width;
@@ -85,7 +83,7 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
                            : "tell of its sharp lobes by traits().sharp, or smooth it";
   if (!seen.surprises.empty()) {
     const Surprise& s = seen.surprises.front();
-    const std::string where = name + " at " + describe(wo_from_cosine(s.cos_theta_o), s.wi);
+    const std::string where = name + " at " + describe(field.to_caller(s.wo), field.to_caller(s.wi));
     if (!std::isfinite(s.ratio))
       throw Error("the function is not 0 where its albedo was found to be 0", where, mend);
     throw Error(text("the function is %.3g times its bound: a lobe that no grid resolves", double(s.ratio)),
@@ -104,8 +102,12 @@ std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vec
   const bool black = std::all_of(albedo.albedo.begin(), albedo.albedo.end(), [](float a) { return a == 0; });
   if (black) notes.push_back("the function is 0 wherever it was looked at: there is no sample for any wo");
   const auto range = [](const Slab& slab) {
-    return text("theta_o %.4g to %.4g degrees", double(slab.theta_lo) * degrees,
-                double(slab.theta_hi) * degrees);
+    std::string where = text("theta_o %.4g to %.4g degrees", double(slab.box.lo[0]) * degrees,
+                             double(slab.box.hi[0]) * degrees);
+    if (slab.box.axes > 1) {
+      where += text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
+    }
+    return where;
   };
   const std::string end = spent ? text("the budget of %.3g evaluations is used up: raise max_evaluations",
                                        double(options.max_evaluations))

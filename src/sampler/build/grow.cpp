@@ -24,7 +24,7 @@ void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicC
   for (const View& view : slab.views) {
     for (int j = 0; j < grid_size; ++j) {
       for (int i = 0; i < grid_size; ++i) {
-        points.push_back({view.cos_theta_o,
+        points.push_back({view.wo,
                           {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
                            box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])}});
       }
@@ -49,7 +49,7 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
       for (const float node : lobatto_nodes) {
         const float y = std::ldexp(box.height, -octave);
         const Vec2<float> p{box.x0 + 0.5f * box.width * (1 + node), above ? y : -y};
-        visits.push_back({task, {{view.cos_theta_o, p}, view.albedo, view.theta_o, 0}});
+        visits.push_back({task, {{view.wo, p}, view.albedo, view.known, {}}});
       }
     }
   }
@@ -86,8 +86,9 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
     const std::size_t i = first_visit + v;
     Leaf& leaf = slabs[task.slab].nodes[task.node].leaf;
     const Box box = box_of(leaf.cell, field.domain);
-    leaf.crossed = leaf.crossed || landmark.travel > max(box.width, box.height);
-    if (landmark.albedo > 0) leaf.note(values[i].upper / landmark.albedo, landmark.theta, points[i].p);
+    for (std::size_t a = 0; a < landmark.travel.size(); ++a)
+      leaf.crossed[a] = leaf.crossed[a] || landmark.travel[a] > max(box.width, box.height);
+    if (landmark.albedo > 0) leaf.note(values[i].upper / landmark.albedo, landmark.known, points[i].p);
   }
   survey.host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
     std::vector<FieldValue> grid;
@@ -99,14 +100,14 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
         const View& view = slab.views[i / grid_points];
         const FieldValue& v = values[first[t] + i];
         if (view.albedo > 0) grid[i] = {v.mean / view.albedo, v.upper / view.albedo};
-        leaf.note(grid[i].upper, view.theta_o, points[first[t] + i].p);
+        leaf.note(grid[i].upper, view.known, points[first[t] + i].p);
       }
       rules.analyse(leaf, grid, slab.views);
       if (rules.bounds) {
         const Box box = box_of(leaf.cell, field.domain);
         const float before = leaf.height;
         leaf.raise(leaf.seen / shape(leaf, box, leaf.seen_at));
-        if (leaf.crossed) leaf.theta_cost += area_share(leaf.cell) * (leaf.height - before);
+        leaf.blame_crossing(area_share(leaf.cell) * (leaf.height - before));
       }
     }
   });
@@ -170,13 +171,14 @@ std::vector<std::uint32_t> dearest_leaves(Slab& slab, const GrowthRules& rules, 
   return chosen;
 }
 
-// What a slab needs next: to be halved, or leaves to be split; nothing when it is done.
+// What a slab needs next: to be halved along a known coordinate, or leaves to be split; nothing when it is
+// done.
 struct Step {
-  bool halve = false;
+  int halve = -1;
   std::vector<std::uint32_t> split;
 };
 Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_halve, float albedo_error) {
-  constexpr float narrowest_slab = 1e-5f;  // radians
+  constexpr float narrowest[] = {1e-5f, 1e-3f};  // slabs, radians
   if (!state.active) return {};
   const float budget = rules.goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
@@ -187,22 +189,29 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   std::vector<std::uint32_t> blind;
   if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
   const bool met = fits && blind.empty();
-  if (may_halve && (met || state.leaves >= state.next_check) &&
-      slab.theta_hi - slab.theta_lo > narrowest_slab) {
-    state.next_check = state.leaves * 3 / 2;
-    if (total(slab, &Leaf::theta_cost) > rules.theta_share * max(budget * ideal, cost - ideal)) {
-      return {true, {}};
+  if (may_halve && (met || state.leaves >= state.next_check)) {
+    int dearest = -1;
+    float most = 0;
+    for (int axis = 0; axis < slab.box.axes; ++axis) {
+      const float saved = total_known_cost(slab, axis);
+      if (slab.box.width(axis) > narrowest[axis] && (dearest < 0 || saved > most)) dearest = axis, most = saved;
     }
+    if (dearest >= 0) state.next_check = state.leaves * 3 / 2;
+    if (dearest >= 0 && most > rules.known_share * max(budget * ideal, cost - ideal)) return {dearest, {}};
   }
   if (met || state.leaves >= rules.max_leaves) return {};
-  if (!blind.empty()) return {false, blind};
+  if (!blind.empty()) return {-1, blind};
   const float fair = 1.5f * budget * ideal / float(state.leaves);  // equal shares are the optimum
-  return {false, dearest_leaves(slab, rules, cost - rules.goal * ideal, fair)};
+  return {-1, dearest_leaves(slab, rules, cost - rules.goal * ideal, fair)};
 }
 
 // Replaces each halved slab by two fresh ones; the tasks already gathered move with their slabs.
+struct Halved {
+  std::uint32_t slab;
+  int axis;
+};
 void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector<Task>& tasks,
-           const std::vector<std::uint32_t>& halved, const Survey& survey) {
+           const std::vector<Halved>& halved, const Survey& survey) {
   std::vector<Slab> next;
   std::vector<SlabState> next_states;
   std::vector<std::uint32_t> moved(slabs.size());
@@ -210,16 +219,17 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
   std::size_t h = 0;
   for (std::uint32_t s = 0; s < slabs.size(); ++s) {
     moved[s] = std::uint32_t(next.size());
-    if (h == halved.size() || halved[h] != s) {
+    if (h == halved.size() || halved[h].slab != s) {
       next.push_back(std::move(slabs[s]));
       next_states.push_back(states[s]);
       continue;
     }
-    ++h;
-    const float mid = 0.5f * (slabs[s].theta_lo + slabs[s].theta_hi);
-    for (const auto& [lo, hi] : {std::pair{slabs[s].theta_lo, mid}, std::pair{mid, slabs[s].theta_hi}}) {
+    const auto axis = std::size_t(halved[h++].axis);
+    KnownBox lower = slabs[s].box, upper = lower;
+    lower.hi[axis] = upper.lo[axis] = 0.5f * (lower.lo[axis] + lower.hi[axis]);
+    for (const KnownBox& box : {lower, upper}) {
       fresh.push_back({std::uint32_t(next.size()), 0});
-      next.push_back(make_slab(lo, hi, survey.albedo, survey.field));
+      next.push_back(make_slab(box, survey.albedo, survey.field));
       next_states.push_back({});
     }
   }
@@ -248,20 +258,20 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
     tasks.clear();
     busy = false;
     if (survey.effort.spent()) return;
-    std::vector<std::uint32_t> halved;
+    std::vector<Halved> halved;
     // Halved slabs begin again: what is left in the end belongs to their leaves.
     const bool may_halve =
         rules.split_slabs && double(survey.effort.evaluations) < 0.7 * double(survey.effort.limit);
     for (std::uint32_t s = 0; s < slabs.size(); ++s) {
       const Step step = next_step(slabs[s], states[s], rules, may_halve, survey.albedo.relative_error);
-      if (step.halve) halved.push_back(s);
+      if (step.halve >= 0) halved.push_back({s, step.halve});
       for (const std::uint32_t i : step.split) {
         split_leaf(slabs[s], i, survey.field.domain);
         const std::uint32_t child = slabs[s].nodes[i].child;
         tasks.push_back({s, child}), tasks.push_back({s, child + 1});
       }
       states[s].leaves += step.split.size();
-      states[s].active = step.halve || !step.split.empty();
+      states[s].active = step.halve >= 0 || !step.split.empty();
       busy = busy || states[s].active;
     }
     if (!halved.empty()) halve(slabs, states, tasks, halved, survey);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Growth of a forest: a partition of theta_o into slabs and, in each, a tree over the square. One engine
+// Growth of a forest: a partition of the known coordinates into slabs and, in each, a tree over the square. One engine
 // serves both modes. A leaf has a cost (exact: area * maximum; one-shot: area * root mean square) and an
 // ideal (area * mean); a slab is done when sum(cost) <= goal * sum(ideal). Rounds: every leaf of every
 // slab that is to be split is evaluated in one batch.
@@ -15,7 +15,7 @@ namespace reflectree::detail {
 
 struct GrowthRules {
   float goal;         // sum(cost) / sum(ideal)
-  float theta_share;  // a slab whose theta cost exceeds this share of (goal - 1) is halved
+  float known_share;  // a slab that narrower ones would save more than this share of (goal - 1) is halved
   std::size_t max_leaves = 60000;
   bool split_slabs = true;
   bool bounds = true;  // shares bound what was seen (exact), or fit it (one-shot)
@@ -26,7 +26,7 @@ struct GrowthRules {
   float progress = 0, progress_end = 0;  // of the host's bar, where this growth begins and ends
 };
 
-// Grows until every slab meets the goal, or the effort is spent; slabs stay ordered by theta_o.
+// Grows until every slab meets the goal, or the effort is spent; a halved slab's halves take its place.
 void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rules);
 
 }  // namespace reflectree::detail

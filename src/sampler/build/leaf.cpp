@@ -66,8 +66,41 @@ bool rows_are_rougher(const Values& v, const DyadicCell& cell) {
   return miss_x > miss_y || (miss_x == miss_y && cell.level_x <= cell.level_y);
 }
 
+// How many known coordinates the views spread over.
+std::size_t axes_of(std::span<const View> views) { return views.size() > views_per_axis ? 2 : 1; }
+
+// The mean over the groups of views along an axis of each group's largest value.
+template <class Value>
+float mean_of_largest(std::span<const View> views, std::size_t axis, const Value& value) {
+  float sum = 0;
+  for (std::size_t g = 0; g < views_per_axis; ++g) {
+    float weight = 0, largest = 0;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (views[k].group[axis] == g) weight += views[k].weight, largest = max(largest, value(k));
+    }
+    sum += weight * largest;
+  }
+  return sum;
+}
+
 float grid_shape(float slope_x, float slope_y, int j, int i) {
   return (1 + slope_x * lobatto_nodes[i]) * (1 + slope_y * lobatto_nodes[j]);
+}
+
+// The mean square of the means of T over the groups of views along an axis, at a node.
+float between(std::span<const View> views, std::size_t axis, Grid grid, int j, int i) {
+  const auto value = [&](std::size_t k) { return grid[k * grid_points + std::size_t(j * grid_size + i)].mean; };
+  float sum = 0;
+  for (std::size_t g = 0; g < views_per_axis; ++g) {
+    float weight = 0, moment = 0, only = 0;
+    std::size_t members = 0;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (views[k].group[axis] != g) continue;
+      ++members, only = value(k), weight += views[k].weight, moment += views[k].weight * value(k);
+    }
+    sum += weight * sqr(members == 1 ? only : moment / weight);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -102,7 +135,8 @@ void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
       if (bound < leaf.height) leaf.height = bound, leaf.slope_x = gx, leaf.slope_y = gy;
     }
   }
-  float steady = 0, peak = -1;
+  std::vector<float> bounds(views.size());
+  float peak = -1;
   for (std::size_t k = 0; k < views.size(); ++k) {
     float bound = 0;
     for (int j = 0; j < grid_size; ++j) {
@@ -112,11 +146,16 @@ void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
         if (ratio > peak) peak = ratio, leaf.peak = std::uint16_t(k * grid_points + std::size_t(j * grid_size + i));
       }
     }
-    steady += views[k].weight * bound;
+    bounds[k] = bound;
   }
   const float area = area_share(leaf.cell);
   leaf.ideal = area * mean;
-  leaf.theta_cost = area * (leaf.height - steady);
+  // What slabs would cost that are thin along one coordinate.
+  leaf.known_cost = {};
+  for (std::size_t axis = 0; axis < axes_of(views); ++axis) {
+    const float thin = mean_of_largest(views, axis, [&](std::size_t k) { return bounds[k]; });
+    leaf.known_cost[axis] = area * (leaf.height - thin);
+  }
   leaf.split_x = rows_are_rougher(envelope, leaf.cell);
   if (towers(leaf, highest)) leaf.split_x = close_in_along_x(leaf);
   leaf.height = max(leaf.height, floor_share);
@@ -140,12 +179,16 @@ void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {
   }
   const Fit line = fit(m);
   leaf.slope_x = line.slope_x, leaf.slope_y = line.slope_y;
-  float square = 0, steady = 0, difference = 0;
+  const std::size_t axes = axes_of(views);
+  float square = 0, difference = 0;
+  Known steady{};  // the square that is left where slabs are thin along a coordinate
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
       const float w = lobatto_weights[j] * lobatto_weights[i] / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
       square += w * s[j][i];
-      steady += w * sqr(m[j][i]);
+      for (std::size_t axis = 0; axis < axes; ++axis) {
+        steady[axis] += w * (sqr(m[j][i]) + (s[j][i] - between(views, axis, grid, j, i)));
+      }
       difference += w * d[j][i];
     }
   }
@@ -154,12 +197,14 @@ void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {
   leaf.height = max(sqrt(square + difference), floor_share);
   leaf.ideal = area * line.mean;
   leaf.cost = max(area * sqrt(square), leaf.ideal);
-  leaf.theta_cost = area * (sqrt(square) - sqrt(steady));
+  leaf.known_cost = {};
+  for (std::size_t axis = 0; axis < axes; ++axis)
+    leaf.known_cost[axis] = area * (sqrt(square) - sqrt(max(steady[axis], 0.f)));
   leaf.split_x = rows_are_rougher(m, leaf.cell);
   // A needle between the points of the grid: pretend that it fills 1/16 of the leaf, until the grid sees it.
   if (towers(leaf, highest)) {
     const float cost = area * sqrt(square + sqr(leaf.seen) / 16);
-    if (leaf.crossed) leaf.theta_cost += cost - leaf.cost;
+    leaf.blame_crossing(cost - leaf.cost);
     leaf.cost = cost;
     leaf.split_x = close_in_along_x(leaf);
   }

@@ -41,14 +41,20 @@ inline constexpr float lobatto_weights[grid_size] = {1.f / 12, 5.f / 12, 5.f / 1
 
 // A viewer of a slab at which its leaves are looked at; the weights of all views sum to 1.
 struct View {
-  float place;  // of theta_o between the slab's borders, in [0, 1]
+  Known place;  // shares of the slab's box, in [0, 1]
+  std::array<std::size_t, 2> group;  // which of the places along each known coordinate it is at
   float weight;
-  float theta_o, cos_theta_o, albedo;
+  Known known;
+  Direction wo;
+  float albedo;
 };
+
+inline constexpr std::size_t views_per_axis = 3;  // Simpson's
 
 // Where a point of the grid lies: shares of slab and leaf, in [0, 1].
 struct GridPlace {
-  float theta, x, y;
+  Known known;
+  float x, y;
 };
 GridPlace grid_place(std::span<const View> views, std::size_t index);
 
@@ -57,25 +63,32 @@ using Grid = std::span<const FieldValue>;
 
 struct Leaf {
   DyadicCell cell;
-  float ideal = 0, cost = 0, theta_cost = 0;  // theta_cost: the part of the cost that narrower slabs save
+  float ideal = 0, cost = 0;
+  Known known_cost{};  // the part of the cost that slabs narrower along a known coordinate save
   float height = 0;                           // bound of T / (albedo q), or its root mean square
   bool split_x = false;
   std::uint16_t peak = 0;          // exact: index in the grid of the largest T / (albedo q)
   float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)
   // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
   // has found once is not lost between the points of a finer grid.
-  float seen = 0, seen_theta = 0;
-  bool crossed = false;  // a landmark moves through the leaf faster than the slab's views can follow
+  float seen = 0;
+  Known seen_by{};
+  // Along which known coordinates a landmark moves through the leaf faster than the slab's views can follow.
+  std::array<bool, 2> crossed{};
   Vec2<float> seen_at{};
 
   // Remembers the largest T / albedo.
-  void note(float value, float theta, Vec2<float> at) {
-    if (value > seen) seen = value, seen_theta = theta, seen_at = at;
+  void note(float value, const Known& by, Vec2<float> at) {
+    if (value > seen) seen = value, seen_by = by, seen_at = at;
   }
   // To at least `bound`; the cost follows.
   void raise(float bound) {
     height = max(height, max(bound, floor_share));
     cost = area_share(cell) * height;
+  }
+  // A cost that slabs narrower along the crossed coordinates would save.
+  void blame_crossing(float saved) {
+    for (std::size_t a = 0; a < crossed.size(); ++a) known_cost[a] += crossed[a] ? saved : 0.f;
   }
 };
 

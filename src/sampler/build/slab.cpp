@@ -5,30 +5,43 @@
 
 namespace reflectree::detail {
 
-Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& table, const Field& field) {
-  constexpr int mark_steps = 12;
-  Slab slab{theta_lo, theta_hi, {}, {}, {Node{}}};
+Slab make_slab(const KnownBox& box, const AlbedoTable& table, const Field& field) {
+  Slab slab{box, {}, {}, {Node{}}};
   // Just inside the borders, where a neighbour's kink does not reach.
-  const auto cosine_at = [&](float t) {
-    return clamp(cos(linear_mix(clamp(t, 1e-4f, 1 - 1e-4f), theta_lo, theta_hi)), min_cos_theta_o, 1.f);
+  const auto viewer = [&](Known share) {
+    for (float& t : share) t = clamp(t, 1e-4f, 1 - 1e-4f);
+    return viewer_at(box.at(share));
   };
-  // Simpson's rule.
-  constexpr float weights[] = {1.f / 6, 4.f / 6, 1.f / 6};
-  for (int k = 0; k < 3; ++k) {
-    const float place = 0.5f * float(k), c = cosine_at(place);
-    slab.views.push_back({place, weights[k], linear_mix(place, theta_lo, theta_hi), c, albedo_at(table, c)});
+  const auto albedo = [&](Direction wo) {
+    return field.frame.isotropic() ? albedo_at(table, wo.z) : albedo_at(table, wo.z, azimuth_of(wo));
+  };
+  constexpr float weights[views_per_axis] = {1.f / 6, 4.f / 6, 1.f / 6};
+  const std::size_t across = box.axes > 1 ? views_per_axis : 1;
+  for (std::size_t k = 0; k < views_per_axis * across; ++k) {
+    const std::array<std::size_t, 2> group{k % views_per_axis, k / views_per_axis};
+    const Known place{0.5f * float(group[0]), 0.5f * float(group[1])};
+    const float weight = weights[group[0]] * (across > 1 ? weights[group[1]] : 1);
+    const Direction wo = viewer(place);
+    slab.views.push_back({place, group, weight, box.at(place), wo, albedo(wo)});
   }
-  const std::vector<Landmark> first = field.landmarks(cosine_at(0)), last = field.landmarks(cosine_at(1));
-  const auto travel = [&](std::size_t i) {
+  // The landmarks' way through the slab.
+  const auto travel = [&](std::size_t i, const std::vector<Landmark>& first, const std::vector<Landmark>& last) {
     if (i >= first.size() || i >= last.size()) return 0.f;
     return max(abs(first[i].p.x - last[i].p.x), abs(first[i].p.y - last[i].p.y));
   };
-  for (int step = 0; step <= mark_steps; ++step) {
-    const float t = float(step) / mark_steps, c = cosine_at(t);
-    const std::vector<Landmark> here = field.landmarks(c);
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      slab.marks.push_back(
-          {{c, here[i].p}, albedo_at(table, c), linear_mix(t, theta_lo, theta_hi), travel(i)});
+  const float middle = across > 1 ? 0.5f : 0.f;
+  const std::vector<Landmark> low = field.landmarks(viewer({0, middle})), high = field.landmarks(viewer({1, middle}));
+  std::vector<Landmark> left, right;
+  if (across > 1) left = field.landmarks(viewer({0.5f, 0})), right = field.landmarks(viewer({0.5f, 1}));
+  const int steps = across > 1 ? 4 : 12, rows = across > 1 ? 4 : 0;
+  for (int row = 0; row <= rows; ++row) {
+    for (int step = 0; step <= steps; ++step) {
+      const Known share{float(step) / float(steps), rows ? float(row) / float(rows) : 0.f};
+      const Direction wo = viewer(share);
+      const std::vector<Landmark> here = field.landmarks(wo);
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        slab.marks.push_back({{wo, here[i].p}, albedo(wo), box.at(share), {travel(i, low, high), travel(i, left, right)}});
+      }
     }
   }
   return slab;
@@ -58,6 +71,14 @@ float total(const Slab& slab, float Leaf::*member) {
   return float(sum);
 }
 
+float total_known_cost(const Slab& slab, int axis) {
+  double sum = 0;
+  for (const Node& node : slab.nodes) {
+    if (node.split == TreeSplit::leaf) sum += double(node.leaf.known_cost[std::size_t(axis)]);
+  }
+  return float(sum);
+}
+
 SlabTotal total_of(const Slab& slab) {
   SlabTotal total;
   for (const Node& node : slab.nodes) {
@@ -80,7 +101,7 @@ void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain) {
     Leaf inherited;
     inherited.cell = cell;
     if (contains(box_of(cell, domain), leaf.seen_at)) {
-      inherited.note(leaf.seen, leaf.seen_theta, leaf.seen_at);
+      inherited.note(leaf.seen, leaf.seen_by, leaf.seen_at);
     }
     slab.nodes.push_back({TreeSplit::leaf, 0, inherited});
   }

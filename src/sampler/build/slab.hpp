@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slab of theta_o under construction, with its tree over the square.
+// A slab of the known coordinates under construction, with its tree over the square.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,6 @@
 
 namespace reflectree::detail {
 
-inline constexpr float theta_max = 1.5707887f;  // cos = min_cos_theta_o, rounded outwards
-
 struct Node {
   TreeSplit split = TreeSplit::leaf;
   std::uint32_t child = 0;  // first of two
@@ -19,24 +17,26 @@ struct Node {
 };
 
 struct Slab {
-  float theta_lo, theta_hi;
+  KnownBox box;
   std::vector<View> views;
-  // Landmarks along the slab: they move with theta_o.
+  // Landmarks along the slab: they move with wo.
   struct Mark {
     FieldPoint point;
-    float albedo, theta;
-    float travel;  // how far it moves along the slab
+    float albedo;
+    Known known;
+    Known travel;  // how far it moves along the slab, by each known coordinate
   };
   std::vector<Mark> marks;
   std::vector<Node> nodes;  // nodes[0] is the root
 };
 
 // A slab with its views and an unsplit root.
-Slab make_slab(float theta_lo, float theta_hi, const AlbedoTable& albedo, const Field& field);
+Slab make_slab(const KnownBox& box, const AlbedoTable& albedo, const Field& field);
 // Leaves of a slab in preorder (indices into nodes).
 std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
 // Sum of a member over the leaves.
 float total(const Slab& slab, float Leaf::*member);
+float total_known_cost(const Slab& slab, int axis);
 // Cost and ideal of the leaves together; in exact mode the cost is the volume under the bounds.
 struct SlabTotal {
   double cost = 0, ideal = 0;

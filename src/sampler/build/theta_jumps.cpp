@@ -15,14 +15,22 @@ constexpr std::size_t points = 128;
 constexpr double leap = 0.02;    // of the values' sum, to be a jump
 constexpr double narrow = 1e-7;  // radians
 
-// Fixed points of the square: half of them spread, half of them drawn to the pole, where lobes are.
-std::vector<Vec2<float>> fixed_points(const Domain& domain, std::uint64_t seed) {
-  Pcg32 u(seed, 17);
-  std::vector<Vec2<float>> p;
+// Fixed points of the square, each with an azimuth of the viewer: half of them spread, half of them drawn to
+// the pole, where lobes are.
+struct FixedPoint {
+  Vec2<float> p;
+  float phi_o;
+};
+std::vector<FixedPoint> fixed_points(const Field& field, std::uint64_t seed) {
+  const Domain& domain = field.domain;
+  Pcg32 u(seed, 17), around(seed, 18);
+  const float span = azimuth_span(field.frame.symmetry);
+  std::vector<FixedPoint> p;
   for (std::size_t i = 0; i < points; ++i) {
     float y = to_unit_float(u());
     if (i % 2) y = std::pow(10.f, -3 * y);
-    p.push_back({2 * to_unit_float(u()) - 1, domain.half() || u() % 2 ? y : -y});
+    const Vec2<float> at{2 * to_unit_float(u()) - 1, domain.half() || u() % 2 ? y : -y};
+    p.push_back({at, span * to_unit_float(around())});
   }
   return p;
 }
@@ -30,12 +38,12 @@ std::vector<Vec2<float>> fixed_points(const Domain& domain, std::uint64_t seed) 
 using Values = std::vector<float>;
 
 // T at the points for every theta_o.
-std::vector<Values> values_at(const Field& field, const std::vector<Vec2<float>>& p,
+std::vector<Values> values_at(const Field& field, const std::vector<FixedPoint>& p,
                               const std::vector<double>& thetas, const Host& host, Effort& effort) {
   std::vector<FieldPoint> all;
   for (const double theta : thetas) {
-    const float c = clamp(float(std::cos(theta)), min_cos_theta_o, 1.f);
-    for (const Vec2<float>& q : p) all.push_back({c, q});
+    const Direction wo = wo_from_cosine(clamp(float(std::cos(theta)), min_cos_theta_o, 1.f));
+    for (const FixedPoint& q : p) all.push_back({turned_to(wo, q.phi_o), q.p});
   }
   std::vector<FieldValue> values(all.size());
   eval_in_parallel(field, host, effort, all, values);
@@ -69,10 +77,10 @@ struct Bracket {
 
 std::vector<float> find_theta_jumps(const Field& field, const Host& host, Effort& effort) {
   constexpr int intervals = 128;
-  const double theta_max = std::acos(double(min_cos_theta_o)) - 1e-4;
-  const std::vector<Vec2<float>> p = fixed_points(field.domain, 1);
+  const double last = std::acos(double(min_cos_theta_o)) - 1e-4;
+  const std::vector<FixedPoint> p = fixed_points(field, 1);
   std::vector<double> thetas;
-  for (int i = 0; i <= intervals; ++i) thetas.push_back(1e-4 + (theta_max - 1e-4) * i / intervals);
+  for (int i = 0; i <= intervals; ++i) thetas.push_back(1e-4 + (last - 1e-4) * i / intervals);
   const std::vector<Values> values = values_at(field, p, thetas, host, effort);
   std::vector<Bracket> open;
   for (std::size_t i = 0; i + 1 < thetas.size(); ++i) {
@@ -99,7 +107,7 @@ std::vector<float> find_theta_jumps(const Field& field, const Host& host, Effort
     open = std::move(next);
   }
   // An edge that moves may pass a point there by chance; other points tell.
-  const std::vector<Vec2<float>> fresh = fixed_points(field.domain, 2);
+  const std::vector<FixedPoint> fresh = fixed_points(field, 2);
   std::vector<double> sides;
   for (const Bracket& b : open) sides.push_back(b.lo - narrow), sides.push_back(b.hi + narrow);
   const std::vector<Values> at = values_at(field, fresh, sides, host, effort);

@@ -2,6 +2,7 @@
 #include "tighten.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "reflectree/math/random.hpp"
@@ -14,64 +15,67 @@ namespace {
 // What the climb may miss at a smooth summit: its last step spans 1/64 of the leaf.
 constexpr float margin = 1e-3f;
 
+// Where a climber stands: shares of its slab, along each known coordinate, then of its leaf; in [0, 1].
+using Place = std::array<float, 4>;
+
 struct Climber {
   Slab* slab;
   Leaf* leaf;
   Box box;
-  float at[3];  // theta_o, x, y as shares of slab and leaf, in [0, 1]
-  float step[3];
+  Place at, step;
   float value;
+  int axes() const { return slab->box.axes + 2; }
 };
 
-FieldPoint point_of(const Climber& c, const float at[3]) {
-  const float theta = linear_mix(at[0], c.slab->theta_lo, c.slab->theta_hi);
-  return {clamp(cos(theta), min_cos_theta_o, 1.f),
-          {c.box.x0 + c.box.width * at[1], c.box.y0 + c.box.height * at[2]}};
+Known known_at(const Climber& c, const Place& at) {
+  Known share{};
+  std::copy_n(at.begin(), c.slab->box.axes, share.begin());
+  return c.slab->box.at(share);
 }
+Vec2<float> point_at(const Climber& c, const Place& at) {
+  const auto x = std::size_t(c.slab->box.axes);
+  return {c.box.x0 + c.box.width * at[x], c.box.y0 + c.box.height * at[x + 1]};
+}
+FieldPoint point_of(const Climber& c, const Place& at) { return {viewer_at(known_at(c, at)), point_at(c, at)}; }
 
 // T / (albedo q): what the leaf's bound must reach at p.
 float ratio_of(const Survey& survey, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
-  const float a = albedo_at(survey.albedo, p.cos_theta_o);
-  return a > 0 && !survey.at_jump(p.cos_theta_o) ? v / (a * shape(leaf, box, p.p)) : 0.f;
+  const float a = survey.albedo_at(p.wo);
+  return a > 0 && !survey.at_jump(p.wo) ? v / (a * shape(leaf, box, p.p)) : 0.f;
 }
 
 // Coordinate steps up and down each axis, all climbers in one batch; steps shrink where none helps.
 void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
-  std::vector<FieldPoint> points(climbers.size() * 6);
+  if (climbers.empty()) return;
+  const int axes = climbers.front().axes();
+  const auto neighbours = std::size_t(2 * axes);
+  std::vector<FieldPoint> points(climbers.size() * neighbours);
   std::vector<FieldValue> values(points.size());
-  const auto moved = [](const Climber& c, int k, float out[3]) {
-    std::copy_n(c.at, 3, out);
+  const auto moved = [](const Climber& c, std::size_t k) {
+    Place out = c.at;
     out[k / 2] = clamp(c.at[k / 2] + (k % 2 ? c.step[k / 2] : -c.step[k / 2]), 1e-5f, 1 - 1e-5f);
+    return out;
   };
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < climbers.size(); ++i) {
-      for (int k = 0; k < 6; ++k) {
-        float at[3];
-        moved(climbers[i], k, at);
-        points[i * 6 + std::size_t(k)] = point_of(climbers[i], at);
-      }
+      for (std::size_t k = 0; k < neighbours; ++k)
+        points[i * neighbours + k] = point_of(climbers[i], moved(climbers[i], k));
     }
     survey.eval(points, values);
     survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Climber& c = climbers[i];
-        float r[6];
-        for (int k = 0; k < 6; ++k) {
-          const std::size_t j = i * 6 + std::size_t(k);
+        std::array<float, 8> r;
+        for (std::size_t k = 0; k < neighbours; ++k) {
+          const std::size_t j = i * neighbours + k;
           r[k] = ratio_of(survey, *c.leaf, c.box, points[j], values[j].upper);
         }
         // Along each axis move to the better side, if it is better than here; else come closer.
         const Climber before = c;
         float best = before.value;
-        for (int axis = 0; axis < 3; ++axis) {
-          const int k = 2 * axis + (r[2 * axis + 1] > r[2 * axis]);
-          if (r[k] > best) {
-            best = r[k];
-            std::copy_n(before.at, 3, c.at);
-            float at[3];
-            moved(before, k, at);
-            std::copy_n(at, 3, c.at);
-          }
+        for (std::size_t axis = 0; axis < std::size_t(axes); ++axis) {
+          const std::size_t k = 2 * axis + (r[2 * axis + 1] > r[2 * axis]);
+          if (r[k] > best) best = r[k], c.at = moved(before, k);
           if (!(max(r[2 * axis], r[2 * axis + 1]) > before.value)) c.step[axis] *= 0.4f;
         }
         c.value = best;
@@ -81,16 +85,22 @@ void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
 }
 
 Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float step, const Domain& domain) {
-  return {&slab, &leaf, box_of(leaf.cell, domain), {at.theta, at.x, at.y}, {step, step, step}, value};
+  Climber c{&slab, &leaf, box_of(leaf.cell, domain), {}, {step, step, step, step}, value};
+  std::copy_n(at.known.begin(), slab.box.axes, c.at.begin());
+  c.at[std::size_t(slab.box.axes)] = at.x, c.at[std::size_t(slab.box.axes) + 1] = at.y;
+  return c;
 }
-GridPlace place_in(const Slab& slab, const Box& box, float theta, Vec2<float> p) {
-  return {(theta - slab.theta_lo) / (slab.theta_hi - slab.theta_lo), (p.x - box.x0) / box.width,
-          (p.y - box.y0) / box.height};
+GridPlace place_in(const Slab& slab, const Box& box, const Known& known, Vec2<float> p) {
+  return {slab.box.share_of(known), (p.x - box.x0) / box.width, (p.y - box.y0) / box.height};
+}
+// The known coordinates of a viewer.
+Known known_of(Direction wo, int axes) {
+  return {theta_of_viewer(wo), axes > 1 ? azimuth_of(wo) : 0.f};
 }
 
 void raise(const Climber& c, float bound) {
-  const Vec2<float> p{c.box.x0 + c.box.width * c.at[1], c.box.y0 + c.box.height * c.at[2]};
-  c.leaf->note(c.value * shape(*c.leaf, c.box, p), linear_mix(c.at[0], c.slab->theta_lo, c.slab->theta_hi), p);
+  const Vec2<float> p = point_at(c, c.at);
+  c.leaf->note(c.value * shape(*c.leaf, c.box, p), known_at(c, c.at), p);
   c.leaf->raise(bound);
 }
 
@@ -108,7 +118,7 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
       const Box box = box_of(leaf.cell, field.domain);
       climbers.push_back(start_at(slabs[s], leaf, grid_place(slabs[s].views, leaf.peak), 0, 0.2f, field.domain));
       if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
-      climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_theta, leaf.seen_at),
+      climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_by, leaf.seen_at),
                                   leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));
     }
   }
@@ -159,7 +169,8 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
       const Climber c = start_at(slabs[s], slabs[s].nodes[i].leaf, {}, 0, 0, field.domain);
       probed.push_back({s, i, points.size(), count});
       for (std::size_t k = 0; k < count; ++k) {
-        const float at[3] = {to_unit_float(u()), to_unit_float(u()), to_unit_float(u())};
+        Place at{};
+        for (int axis = 0; axis < c.axes(); ++axis) at[std::size_t(axis)] = to_unit_float(u());
         points.push_back(point_of(c, at));
       }
       if (points.size() >= batch) flush();
@@ -202,7 +213,7 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
     if (survey.towers && worst > 8 * leaf.height) survey.towers->push_back(points[where]);
     found[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
     const Box box = box_of(leaf.cell, field.domain);
-    const GridPlace at = place_in(slab, box, acos(points[where].cos_theta_o), points[where].p);
+    const GridPlace at = place_in(slab, box, known_of(points[where].wo, slab.box.axes), points[where].p);
     climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
   };
   probe_leaves(slabs, seed, &FieldValue::upper, survey, count, visit);
@@ -228,7 +239,7 @@ void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& s
       const float v = ratios[i] * shape(leaf, box, points[i].p);
       const double square = double(ratios[i]) * double(v);
       sum += square, sum2 += square * square;
-      if (v > leaf.seen) leaf.note(v, acos(points[i].cos_theta_o), points[i].p);
+      if (v > leaf.seen) leaf.note(v, known_of(points[i].wo, slabs[t.slab].box.axes), points[i].p);
     }
     const double n = double(t.count), square = sum / n;
     const double error = std::sqrt(max(sum2 / n - square * square, 0.) / n);

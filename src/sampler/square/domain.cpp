@@ -19,6 +19,8 @@ const char* name_of(DomainKind kind) {
       return "mirror_vector";
     case DomainKind::normal_vector:
       return "normal_vector";
+    case DomainKind::slope_star:
+      return "slope_star";
   }
   return "unknown";
 }

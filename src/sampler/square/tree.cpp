@@ -109,9 +109,10 @@ double TreeReader::mean_density(const TreeLeaf& leaf) const {
 double TreeReader::density_at(Vec2<float> p) const {
   const TreeLeaf leaf = find(p);
   const SquareCell& c = leaf.cell;
-  const float s = 2 * (p.x - c.x0) / (c.x1 - c.x0) - 1, t = 2 * (p.y - c.y0) / (c.y1 - c.y0) - 1;
-  const float gx = float(tree_.slope_x[leaf.index]) / 128, gy = float(tree_.slope_y[leaf.index]) / 128;
-  return mean_density(leaf) * double((1 + gx * s) * (1 + gy * t));
+  const double s = 2 * double(p.x - c.x0) / double(c.x1 - c.x0) - 1;
+  const double t = 2 * double(p.y - c.y0) / double(c.y1 - c.y0) - 1;
+  const double gx = tree_.slope_x[leaf.index] / 128., gy = tree_.slope_y[leaf.index] / 128.;
+  return mean_density(leaf) * (1 + gx * s) * (1 + gy * t);
 }
 
 }  // namespace reflectree

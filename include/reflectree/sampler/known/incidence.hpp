@@ -3,22 +3,71 @@
 #pragma once
 
 #include "reflectree/brdf/brdf.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/known/viewer_frame.hpp"
 
 namespace reflectree {
 
 struct Incidence {
   Direction known;         // wo as the caller gave it
-  Direction wo;            // turned into the x-z plane
+  Direction wo;            // in the frame of the domain
   float cos_phi, sin_phi;  // of the turn back
   float albedo;            // a(wo) of the target
+  float phi_o = 0;         // of anisotropic functions: the azimuth in the viewer's frame, folded
+  float side = 0;          // its sign bit: the frame is mirrored, y turned around, before it is turned
+};
+
+// What is known of a sampler's viewers.
+struct PackedViewer {
+  PackedAlbedo albedo;
+  ViewerFrame frame = {};
+  float cos_axis = 1, sin_axis = 0;
+  bool turns = true;  // the domain lives in the frame where wo has no y, rather than in the viewer's frame
 };
 
 // How far |wo|^2 may be from 1: what a renderer's rounding leaves.
 inline constexpr float unit_length_tolerance = 1e-3f;
 
+namespace detail {
+// The rest of find_incidence for anisotropic functions: wo is folded, and the domain's frame follows.
+REFLECTREE_INLINE void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse) {
+  in.side = 0;
+  // In the frame of the axis.
+  Direction w = turn(in.known, viewer.cos_axis, -viewer.sin_axis);
+  float cosine = viewer.cos_axis, sine = viewer.sin_axis;
+  const auto half_turn = [&] { w.x = -w.x, w.y = -w.y, cosine = -cosine, sine = -sine; };
+  switch (viewer.frame.symmetry) {
+    case ViewerSymmetry::two_planes:  // mirroring x is mirroring y and half a turn
+      if (w.x < 0) half_turn();
+      if (w.y < 0) w.y = -w.y, in.side = -0.f;
+      break;
+    case ViewerSymmetry::one_plane:
+      if (w.y < 0) w.y = -w.y, in.side = -0.f;
+      break;
+    case ViewerSymmetry::half_turn:
+      if (w.y < 0) half_turn();
+      break;
+    default:
+      break;
+  }
+  in.phi_o = angle_of(w.y, w.x);
+  if (in.phi_o < 0) in.phi_o += 2 * pi;
+  in.wo = {w.x, w.y, in.wo.z};
+  if (viewer.turns) {
+    in.wo = {sin_theta, 0, in.wo.z};
+    const float c = sin_theta > 0 ? w.x * inverse : 1.f, s = w.y * inverse;
+    // Turned by phi_o, perhaps mirrored, then turned by the axis: mirroring turns phi_o around.
+    const float around = flip_sign(s, in.side);
+    in.cos_phi = cosine * c - sine * around, in.sin_phi = sine * c + cosine * around;
+  } else {
+    in.cos_phi = cosine, in.sin_phi = sine;
+  }
+}
+}  // namespace detail
+
 // False is "no sample": wo below or at the horizon, not finite, not of unit length, or albedo 0.
-REFLECTREE_INLINE bool find_incidence(const PackedAlbedo& albedo, Direction wo, Incidence& out) {
+REFLECTREE_INLINE bool find_incidence(const PackedViewer& viewer, Direction wo, Incidence& out) {
   const float sin2 = wo.x * wo.x + wo.y * wo.y;
   if (!(wo.z >= min_cos_theta_o && abs(sin2 + wo.z * wo.z - 1) <= unit_length_tolerance)) return false;
   const float sin_theta = sqrt(sin2);
@@ -26,14 +75,19 @@ REFLECTREE_INLINE bool find_incidence(const PackedAlbedo& albedo, Direction wo, 
   const float inverse = sin_theta > 0 ? 1 / sin_theta : 0.f;
   const float cos_theta = min(wo.z, 1.f);
   out.wo = {sin_theta, 0, cos_theta};
-  out.cos_phi = sin_theta > 0 ? wo.x * inverse : 1.f;
-  out.sin_phi = wo.y * inverse;
-  out.albedo = albedo.at(cos_theta);
+  if (viewer.frame.isotropic()) {
+    out.cos_phi = sin_theta > 0 ? wo.x * inverse : 1.f;
+    out.sin_phi = wo.y * inverse;
+    out.albedo = viewer.albedo.at(cos_theta);
+  } else {
+    detail::fold_viewer(viewer, out, sin_theta, inverse);
+    out.albedo = viewer.albedo.at(cos_theta, out.phi_o);
+  }
   return out.albedo > 0;
 }
 
 REFLECTREE_INLINE Direction from_incidence(const Incidence& in, Direction w) {
-  return {w.x * in.cos_phi - w.y * in.sin_phi, w.x * in.sin_phi + w.y * in.cos_phi, w.z};
+  return turn({w.x, flip_sign(w.y, in.side), w.z}, in.cos_phi, in.sin_phi);
 }
 // What f is evaluated at: the sampler's own frame for functions that are isotropic by formula, which saves
 // the turn; else the caller's.
@@ -43,7 +97,8 @@ REFLECTREE_INLINE ShadingGeometry<float> known_geometry(const Incidence& in, Sha
   return g;
 }
 REFLECTREE_INLINE Direction to_incidence(const Incidence& in, Direction w) {
-  return {w.x * in.cos_phi + w.y * in.sin_phi, w.y * in.cos_phi - w.x * in.sin_phi, w.z};
+  const Direction turned{w.x * in.cos_phi + w.y * in.sin_phi, w.y * in.cos_phi - w.x * in.sin_phi, w.z};
+  return {turned.x, flip_sign(turned.y, in.side), turned.z};
 }
 
 }  // namespace reflectree

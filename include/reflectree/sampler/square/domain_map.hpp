@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map of each domain (domain.hpp), with its inverse and its measure. wo lies in the x-z plane.
+// The map of each domain (domain.hpp), with its inverse and its measure.
 #pragma once
 
 #include "reflectree/brdf/shading_geometry.hpp"
@@ -126,6 +126,56 @@ REFLECTREE_INLINE LoweredMirrorVector lower_mirror_vector(Direction wo, Directio
   return {about, rim.p * t / (rim.p - (rim.c - rim.p) * t)};
 }
 
+// In slopes, n = (tau, 1), the half vectors whose reflection of wo lies above the surface fill the disc
+//   |tau - t|^2 < 1 + |t|^2,  t = (wo.x, wo.y) / wo.z,
+// which is a star about the normal, and so is its image under a linear map S = diag(s, 1/s): with
+// tau = S r u(phi), u the unit circle, its rim is at
+//   r = R = (b + sqrt(b^2 + q wo.z^2)) / (q wo.z),  q = |S u|^2,  b = S u . (wo.x, wo.y),
+// and the radius runs over it as above, r = y d, d = p / (p + (c - p) y) with p / c = R, r' = d^2;
+// d(slopes) = det S r dr dphi, det S = 1.
+template <class T>
+struct SlopeStar {
+  Vec2<T> along;  // S u
+  T p, c;
+};
+template <class T>
+REFLECTREE_INLINE SlopeStar<T> slope_star(Vec3<T> wo, Vec2<T> u, T stretch) {
+  const Vec2<T> along{stretch * u.x, u.y / stretch};
+  const T q = along.x * along.x + along.y * along.y, b = along.x * wo.x + along.y * wo.y;
+  const T l = sqrt(b * b + q * sqr(wo.z)) + abs(b);  // for b < 0, R = wo.z / l: nothing cancels
+  return {along, by_sign(b, l, wo.z), by_sign(b, q * wo.z, l)};
+}
+template <class T>
+REFLECTREE_INLINE DomainPointT<T> lift_slope_star(Vec3<T> wo, T stretch, Vec2<T> azimuth, T y) {
+  y = max(y, T(1e-12f));
+  const SlopeStar<T> star = slope_star(wo, azimuth, stretch);
+  const T d = star.p / (star.p + (star.c - star.p) * y), r = y * d;
+  const Vec2<T> tau{r * star.along.x, r * star.along.y};
+  const T nn = T(1) + tau.x * tau.x + tau.y * tau.y;
+  const T wo_n = max(wo.x * tau.x + wo.y * tau.y + wo.z, T(min_cos_theta_i));
+  const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
+  const Vec3<T> wi{twice * tau.x - wo.x, twice * tau.y - wo.y, max(twice - wo.z, T(min_cos_theta_i))};
+  const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (r * d * d);
+  const T cos_theta_h = sqrt(cos2_theta_h);
+  const Vec3<T> wh{tau.x * cos_theta_h, tau.y * cos_theta_h, cos_theta_h};
+  return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
+}
+// The azimuth's direction u in the square, and |y|.
+struct LoweredSlopes {
+  Vec2<float> u;
+  float y;
+};
+REFLECTREE_INLINE LoweredSlopes lower_slope_star(Direction wo, Direction wi, float stretch) {
+  const Direction wh = normalize(sum_of_directions(wo, wi));
+  const float z = max(wh.z, 1e-12f);
+  // No less than a rounding of wi: at the pole itself the density of a leaf would be infinite.
+  const Vec2<float> v{wh.x / (z * stretch), wh.y / z * stretch};
+  const float r = max(sqrt(v.x * v.x + v.y * v.y), 1e-7f);
+  const Vec2<float> u = v.x == 0 && v.y == 0 ? Vec2<float>{1, 0} : Vec2<float>{v.x / r, v.y / r};
+  const SlopeStar<float> star = slope_star(wo, u, stretch);
+  return {u, star.p * r / (star.p - (star.c - star.p) * r)};
+}
+
 // x in [-1, 1] of the azimuth of w, |phi| = pi/2 (1 - x).
 REFLECTREE_INLINE float lower_azimuth(Direction w) {
   const float a = abs(w.x), b = abs(w.y);
@@ -150,6 +200,8 @@ REFLECTREE_INLINE DomainPointT<T> lift_point(const Domain& domain, Vec3<T> wo, V
       return lift_mirror_vector(wo, Vec2<T>{wo.x, wo.z}, azimuth, y);
     case DomainKind::normal_vector:
       return lift_mirror_vector(wo, Vec2<T>{T(0), T(1)}, azimuth, y);
+    case DomainKind::slope_star:
+      return lift_slope_star(wo, T(domain.stretch), azimuth, y);
     case DomainKind::projected_disk: {
       const T r = sqrt(y), z = max(sqrt(T(1) - y), T(min_cos_theta_i));
       return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}), T(pi)};
@@ -170,8 +222,8 @@ REFLECTREE_INLINE DomainPointT<T> lift_point(const Domain& domain, Vec3<T> wo, V
 
 }  // namespace detail
 
-// wo = (sin theta_o, 0, cos theta_o); p in square coordinates (domain.hpp); `mirrored` turns wi.y around, the
-// coin of half domains.
+// wo = (sin theta_o, 0, cos theta_o), or any for domains in the frame of the surface; p in square coordinates
+// (domain.hpp); `mirrored` turns wi.y around, the coin of half domains.
 REFLECTREE_INLINE DomainPoint lift(const Domain& domain, Direction wo, Vec2<float> p, bool mirrored = false) {
   return detail::lift_point(domain, wo, {p.x, flip_sign(p.y, mirrored ? -0.f : 0.f)});
 }
@@ -198,6 +250,9 @@ REFLECTREE_INLINE auto with_known_kind(Domain domain, Body&& body) {
     case DomainKind::equal_area:
       domain.kind = DomainKind::equal_area;
       return body(domain);
+    case DomainKind::slope_star:
+      domain.kind = DomainKind::slope_star;
+      return body(domain);
     default:
       domain.kind = DomainKind::stretched;
       return body(domain);
@@ -221,6 +276,12 @@ REFLECTREE_INLINE Vec2<float> lower(const Domain& domain, Direction wo, Directio
       const bool mirror = domain.kind == DomainKind::mirror_vector;
       const auto at = detail::lower_mirror_vector(mirror ? wo : Direction{0, 0, 1}, wi);
       turned = at.about;
+      y = at.y;
+      break;
+    }
+    case DomainKind::slope_star: {
+      const auto at = detail::lower_slope_star(wo, wi, domain.stretch);
+      turned = {at.u.x, at.u.y, 0};
       y = at.y;
       break;
     }
