@@ -198,13 +198,17 @@ TYPED_TEST(ModelContract, IsReciprocalAndConservesEnergyIffDeclaredPhysical) {
   for (int i = 0; i < model_count; ++i) {
     const auto model = random_model<TypeParam>(bits);
     const double asymmetry = asymmetry_of_reciprocity(model, bits);
-    if (physical) EXPECT_LT(asymmetry, 1e-6) << model.traits().name;
+    if (physical) {
+      EXPECT_LT(asymmetry, 1e-6) << model.traits().name;
+    }
     broken = broken || asymmetry > 1e-3;
   }
   for (int i = 0; i < (physical ? 6 : model_count) && !broken; ++i) {
     const auto model = brightest(random_model<TypeParam>(albedo_bits));
     const double albedo = largest_albedo(model);
-    if (physical) EXPECT_LE(albedo, 1 + 1e-4) << model.traits().name;
+    if (physical) {
+      EXPECT_LE(albedo, 1 + 1e-4) << model.traits().name;
+    }
     broken = !physical && albedo > 1 + 1e-3;
   }
   EXPECT_EQ(broken, !physical);

@@ -29,7 +29,9 @@ bool reads(ByteView bytes, const std::string& member) {
     std::vector<float> values(pairs.wo.size() * std::size_t(f.channels()));
     f.eval(pairs.wo, pairs.wi, values);
     for (const float v : values) EXPECT_TRUE(v >= 0 && std::isfinite(v)) << v;
-    if (!member.empty()) EXPECT_EQ(f.traits().name, file_text("a file", member));
+    if (!member.empty()) {
+      EXPECT_EQ(f.traits().name, file_text("a file", member));
+    }
     return true;
   } catch (const Error& e) {
     EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
