@@ -12,11 +12,12 @@ namespace reflectree::cli {
 namespace {
 
 int run_bake(const Context& context, const std::string& text, const std::string& output, bool whole) {
-  if (names_sampler_file(context, text)) {
+  const FilePlaces places = context.places();
+  if (names_sampler_file(text, places)) {
     throw Error("is a sampler; a bake needs a material", text,
-                "name " + load_sampler(context.locate(text)).material);
+                "name " + load_sampler(places.find(text)).material);
   }
-  const AnyBrdf f = load_material(context, parse(context, text));
+  const AnyBrdf f = open_brdf(text, places);
   const HalfAngleTable table = tabulate_merl(f, !whole, context.host("baking"));
   const Bytes bytes = write_merl(table);
   write_file_atomically(output, ByteView(bytes));

@@ -45,10 +45,10 @@ void add_build(CLI::App& app, Context& context, Run& run) {
   command->callback([&context, &run, o] {
     run = [&context, o] {
       check_output(o->output);
-      if (names_sampler_file(context, o->material)) {
+      if (names_sampler_file(o->material, context.places())) {
         throw Error("is a sampler already", o->material, "name a material");
       }
-      Subject subject = open_subject(context, o->material, o->choices);
+      OpenedSampler subject = open_sampler(context, o->material, o->choices);
       save_sampler(o->output, subject.data);
       subject.file_size = std::filesystem::file_size(o->output);
       show_info(context, "build", subject);

@@ -14,6 +14,8 @@
 #include "measure.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/formats/format_table.hpp"
+#include "reflectree/text/joined_words.hpp"
 
 namespace reflectree::cli {
 
@@ -94,10 +96,11 @@ int run_compare(const Context& context, const CompareOptions& given) {
   // Everything is read before the long work begins.
   std::vector<StudyMaterial> materials;
   for (const std::string& name : material_names(context, given)) {
-    Material material = parse(context, name);
-    materials.push_back({name, material, load_material(context, material)});
+    const FilePlaces places = context.places();
+    const Material material = parse_material(name, places);
+    materials.push_back({name, material, make_brdf(material, places)});
   }
-  const std::vector<Environment> lights = read_lights(context, given);
+  const std::vector<Illumination> lights = read_lights(context, given);
   const std::string command = command_of(given), host_machine = machine();
   const Json options = key_of(o, lights, wanted);
   Json key = options;  // what kept results must agree in
@@ -156,10 +159,9 @@ void add_compare(CLI::App& app, Context& context, Run& run) {
       app.add_subcommand("compare", "Measure every sampler on materials, and say who is best");
   auto o = std::make_shared<CompareOptions>();
   command
-      ->add_option(
-          "MATERIAL", o->materials,
-          "Materials, files, or folders of .binary and .bsdf files; nothing: the measured ones of the data "
-          "folder, or models")
+      ->add_option("MATERIAL", o->materials,
+                   "Materials, files, or folders of " + joined_words(material_endings(), " and ") +
+                       " files; nothing: the measured ones of the data folder, or models")
       ->type_name("");
   command->add_option("--samplers", o->samplers, "Only these, with commas; nothing: all")
       ->type_name("NAME,...");

@@ -22,13 +22,13 @@ struct CompareOptions {
 std::vector<std::string> material_names(const Context& context, const CompareOptions& given);
 std::vector<const SamplerInfo*> chosen_samplers(const std::string& list);
 // The procedural lights; then those named, or those of the data folder.
-std::vector<study::Environment> read_lights(const Context& context, const CompareOptions& given);
+std::vector<study::Illumination> read_lights(const Context& context, const CompareOptions& given);
 
 // Of the sources, at the time of the build.
 const char* source_commit();
 
 // What a kept result must agree with to be taken up again.
-nlohmann::ordered_json key_of(const study::StudyOptions& options, std::span<const study::Environment> lights,
+nlohmann::ordered_json key_of(const study::StudyOptions& options, std::span<const study::Illumination> lights,
                               std::span<const SamplerInfo* const> samplers);
 
 nlohmann::ordered_json json_of(const study::MaterialResult& material);
@@ -37,9 +37,9 @@ nlohmann::ordered_json json_of(const study::Verdict& verdict);
 
 // A line a material, sampler and theta_o.
 std::string csv_of(std::span<const study::MaterialResult> materials,
-                   std::span<const study::Environment> lights, const study::StudyOptions& options);
+                   std::span<const study::Illumination> lights, const study::StudyOptions& options);
 
 void show(const Context& context, const std::vector<study::MaterialResult>& all, const study::Verdict& v,
-          std::span<const study::Environment> lights, const study::StudyOptions& o);
+          std::span<const study::Illumination> lights, const study::StudyOptions& o);
 
 }  // namespace reflectree::cli

@@ -5,8 +5,10 @@
 
 #include "compare.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/picture/image.hpp"
+#include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
+#include "reflectree/picture/image.hpp"
+#include "reflectree/text/joined_words.hpp"
 
 namespace reflectree::cli {
 
@@ -44,19 +46,22 @@ std::vector<std::string> default_materials(const Context& context, bool quick) {
 
 // The measured files of a folder.
 std::vector<std::string> files_of(const std::string& folder) {
+  const std::vector<std::string_view> endings = material_endings();
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path ending = entry.path().extension();
-    if (ending == ".binary" || ending == ".bsdf") files.push_back(entry.path().string());
+    const std::string ending = entry.path().extension().string();
+    if (std::find(endings.begin(), endings.end(), ending) != endings.end())
+      files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   if (files.empty())
-    throw Error("no measured files in this folder", folder, "name one with .binary or .bsdf files");
+    throw Error("no measured files in this folder", folder,
+                "name one with " + joined_words(endings, " or ") + " files");
   return files;
 }
 
 // Row 0 of the picture is the zenith; luminance by ITU-R BT.709.
-Environment read_environment(const std::string& path) {
+Illumination read_illumination(const std::string& path) {
   const Image image = rgb_of(read_image(path), path);
   LatLong map{image.width, image.height, {}};
   for (int y = 0; y < image.height; ++y) {
@@ -65,7 +70,7 @@ Environment read_environment(const std::string& path) {
       map.radiance.push_back(0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2]);
     }
   }
-  return make_environment(fs::path(path).stem().string(), std::move(map));
+  return make_illumination(fs::path(path).stem().string(), std::move(map));
 }
 
 }  // namespace
@@ -103,8 +108,8 @@ std::vector<const SamplerInfo*> chosen_samplers(const std::string& list) {
   return all;
 }
 
-std::vector<Environment> read_lights(const Context& context, const CompareOptions& given) {
-  std::vector<Environment> lights = procedural_environments();
+std::vector<Illumination> read_lights(const Context& context, const CompareOptions& given) {
+  std::vector<Illumination> lights = procedural_illuminations();
   std::vector<std::string> paths;
   for (const std::string& path : given.envmaps) paths.push_back(context.locate(path));
   const fs::path folder = context.locate("envmaps");
@@ -115,7 +120,7 @@ std::vector<Environment> read_lights(const Context& context, const CompareOption
     }
     std::sort(paths.begin(), paths.end());
   }
-  for (const std::string& path : paths) lights.push_back(read_environment(path));
+  for (const std::string& path : paths) lights.push_back(read_illumination(path));
   return lights;
 }
 

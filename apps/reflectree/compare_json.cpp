@@ -3,7 +3,7 @@
 
 namespace reflectree::study {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cell, target_variance, sum_variance, worst_variance, dead, by_density,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StudyCell, target_variance, sum_variance, worst_variance, dead, by_density,
                                    bias, bias_interval, biased, sample_ns, pdf_ns, floor_ns, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorCurve, n, random, stratified)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SamplerResult, sampler, fault, bytes, build_seconds, cells, curves, slices)
@@ -20,7 +20,7 @@ namespace reflectree::cli {
 using Json = nlohmann::ordered_json;
 using namespace study;
 
-Json key_of(const StudyOptions& o, std::span<const Environment> lights,
+Json key_of(const StudyOptions& o, std::span<const Illumination> lights,
             std::span<const SamplerInfo* const> samplers) {
   Json key{{"theta_o_deg", o.theta_o_deg},
            {"samples", o.samples},
@@ -30,7 +30,7 @@ Json key_of(const StudyOptions& o, std::span<const Environment> lights,
            {"cubature_evaluations", o.cubature_evaluations},
            {"round_seconds", o.round_seconds},
            {"seed", o.seed}};
-  for (const Environment& light : lights)
+  for (const Illumination& light : lights)
     key["lights"].push_back({light.name, light.mean, light.mean_square});
   for (const SamplerInfo* s : samplers) key["samplers"].push_back(s->name);
   return key;
@@ -40,7 +40,7 @@ Json json_of(const MaterialResult& material) { return Json(nlohmann::json(materi
 MaterialResult material_from(const Json& json) { return nlohmann::json(json).get<MaterialResult>(); }
 Json json_of(const Verdict& verdict) { return Json(nlohmann::json(verdict)); }
 
-std::string csv_of(std::span<const MaterialResult> materials, std::span<const Environment> lights,
+std::string csv_of(std::span<const MaterialResult> materials, std::span<const Illumination> lights,
                    const StudyOptions& o) {
   // Quoted: a material's text holds commas.
   const auto quoted = [](const std::string& text) {
@@ -53,12 +53,12 @@ std::string csv_of(std::span<const MaterialResult> materials, std::span<const En
       "interval,"
       "biased,"
       "sample_ns,pdf_ns,floor_ns,bytes,build_seconds";
-  for (const Environment& light : lights) out += "," + quoted("error " + light.name);
+  for (const Illumination& light : lights) out += "," + quoted("error " + light.name);
   out += "\n";
   for (const MaterialResult& m : materials) {
     for (const SamplerResult& s : m.samplers) {
       for (std::size_t i = 0; i < s.cells.size(); ++i) {
-        const study::Cell& c = s.cells[i];
+        const study::StudyCell& c = s.cells[i];
         out += fmt::format(
             "{},{},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{},{:.4g},{:.4g},{:.4g},{},{:.4g}",
             quoted(m.material), s.sampler, o.theta_o_deg[i], c.target_variance, c.sum_variance,

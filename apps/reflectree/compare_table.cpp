@@ -8,16 +8,16 @@ namespace reflectree::cli {
 using namespace study;
 
 void show(const Context& context, const std::vector<MaterialResult>& all, const Verdict& v,
-          std::span<const Environment> lights, const StudyOptions& o) {
+          std::span<const Illumination> lights, const StudyOptions& o) {
   for (const MaterialResult& m : all) {
     Table table{{m.material, "theta_o", "variance", "sum", "worst", "dead %", "bias", "+-", "ns", "x floor",
                  "pdf ns", "KiB", "build s"},
                 {}};
-    for (const Environment& light : lights) table.head.push_back("eff " + light.name);
+    for (const Illumination& light : lights) table.head.push_back("eff " + light.name);
     for (const SamplerResult& s : m.samplers) {
       if (!s.fault.empty()) table.rows.push_back({s.sampler, "fault"});
       for (std::size_t i = 0; i < s.cells.size(); ++i) {
-        const study::Cell& c = s.cells[i];
+        const study::StudyCell& c = s.cells[i];
         table.rows.push_back(
             {s.sampler, fmt::format("{}", o.theta_o_deg[i]), fmt::format("{:.3g}", c.target_variance),
              fmt::format("{:.3g}", c.sum_variance), fmt::format("{:.3g}", c.worst_variance),

@@ -4,10 +4,9 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree::cli {
 
@@ -37,12 +36,10 @@ void Context::detail(const std::string& line) const {
   if (verbose) say(line);
 }
 
-std::string Context::locate(const std::string& path) const {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  if (fs::exists(path, ignored) || data.empty()) return path;
-  const fs::path other = fs::path(data) / path;
-  return fs::path(path).is_relative() && fs::exists(other, ignored) ? other.string() : path;
+FilePlaces Context::places() const {
+  return {data, "", [this](const std::string& path, const std::string& found) {
+            detail(path + ": found as " + found);
+          }};
 }
 
 double shortest(float x) { return std::strtod(shortest_text(x).c_str(), nullptr); }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "reflectree/formats/open.hpp"
 #include "reflectree/host.hpp"
 
 namespace reflectree::cli {
@@ -37,8 +38,11 @@ struct Context {
   void say(const std::string& line) const;
   void detail(const std::string& line) const;
 
-  // Where a file is: as named, or in the folder of measured data. The name itself where it is nowhere.
-  std::string locate(const std::string& path) const;
+  // Where files are looked for; -v tells where they were found.
+  FilePlaces places() const;
+  // Where a file or folder is: as named, or in the folder of measured data. The name itself where it is
+  // nowhere.
+  std::string locate(const std::string& path) const { return places().find(path); }
 
   // The program's threads, progress shown under `label`, and Ctrl-C.
   Host host(const std::string& label) const;

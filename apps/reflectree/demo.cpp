@@ -34,7 +34,8 @@ const std::vector<double> view_deg{15, 45, 75};
 constexpr std::size_t tests_a_view = 2;
 
 // Chi-square of both modes at every view; relative variance of one-shot mode, the worst view.
-void prove(const Subject& subject, int tests, const Context& context, const Host& host, Outcome& outcome) {
+void prove(const OpenedSampler& subject, int tests, const Context& context, const Host& host,
+           Outcome& outcome) {
   ChiSquareOptions options;
   options.samples = chi_square_samples;
   options.seed = context.seed;
@@ -86,15 +87,15 @@ std::string origin(const Material& material) {
 }
 
 // Written, read back, and compared.
-void save(const Subject& subject, const std::string& path) {
+void save(const OpenedSampler& subject, const std::string& path) {
   save_sampler(path, subject.data);
   if (load_sampler(path) == subject.data) return;
   throw std::logic_error("a saved sampler reads back differently: " + path);
 }
 
 Outcome run_material(const std::string& text, int tests, const std::string& folder, const Context& context) {
-  const Subject subject = open_subject(context, text, {});
-  const Material material = parse(context, subject.data.material);
+  const OpenedSampler subject = open_sampler(context, text, {});
+  const Material material = parse_material(subject.data.material, subject.places);
   Outcome outcome;
   outcome.text = text;
   outcome.name = file_name(material, text);
@@ -130,7 +131,7 @@ std::vector<std::string> default_materials(const Context& context) {
 int run_demo(const Context& context, std::vector<std::string> materials, const std::string& folder) {
   if (materials.empty()) materials = default_materials(context);
   for (const std::string& text : materials) {  // a typing error shows now, not after minutes
-    if (!names_sampler_file(context, text)) load_material(context, parse(context, text));
+    if (!names_sampler_file(text, context.places())) open_brdf(text, context.places());
   }
   make_folder(folder);
   const auto start = std::chrono::steady_clock::now();

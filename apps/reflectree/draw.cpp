@@ -14,7 +14,7 @@ namespace reflectree::cli {
 
 namespace fs = std::filesystem;
 
-draw::ReportMaterial draw_material(const Subject& subject, const std::vector<double>& theta_o_deg,
+draw::ReportMaterial draw_material(const OpenedSampler& subject, const std::vector<double>& theta_o_deg,
                                    std::size_t samples, std::uint64_t seed) {
   std::vector<float> theta_o;
   for (const double theta : theta_o_deg) theta_o.push_back(float(theta * pi_v<double> / 180));
@@ -86,7 +86,7 @@ std::vector<std::string> write_folder(const std::string& folder, const draw::Rep
 
 int run_draw(const Context& context, const Options& o) {
   const std::vector<double> theta_o_deg = parse_theta_o(o.theta_o_deg);
-  const Subject subject = open_subject(context, o.subject, o.choices);
+  const OpenedSampler subject = open_sampler(context, o.subject, o.choices);
   const draw::ReportMaterial material = draw_material(subject, theta_o_deg, drawn_samples, context.seed);
   draw::ReportMeta meta;
   meta.command = "reflectree draw";

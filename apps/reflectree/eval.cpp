@@ -5,11 +5,11 @@
 #include "commands.hpp"
 #include "eval_pairs.hpp"
 #include "interrupt.hpp"
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/npy.hpp"
 #include "reflectree/formats/sampler_file.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -83,27 +83,17 @@ Json json_rows(const Rows& rows) {
   return all;
 }
 
-// The function alone, of a material or of a saved sampler.
-AnyBrdf load_function(const Context& context, const std::string& subject) {
-  if (!names_sampler_file(context, subject)) return load_material(context, parse(context, subject));
-  const std::string path = context.locate(subject);
-  const SamplerData data = load_sampler(path);
-  AnyBrdf f = load_material(context, parse(context, data.material, path), path);
-  check_identity(data, f);
-  return f;
-}
-
 int run_eval(const Context& context, const Options& o) {
   const DirectionPairs pairs = read_pairs(o.pairs);  // before a build of minutes
   std::string material;
   Rows rows;
   if (o.no_pdf) {
     if (o.choices.given) throw Error("options of building do not apply", "--no-pdf", "leave them out");
-    const AnyBrdf f = load_function(context, o.subject);
+    const AnyBrdf f = open_brdf(o.subject, context.places());
     material = f.traits().name;
     rows = evaluate(f, nullptr, pairs);
   } else {
-    const Subject subject = open_subject(context, o.subject, o.choices);
+    const OpenedSampler subject = open_sampler(context, o.subject, o.choices);
     material = subject.data.material;
     rows = evaluate(subject.f, &subject.sampler, pairs);
   }

@@ -44,7 +44,7 @@ Leaves leaves_of(const std::vector<T>& trees) {
   return leaves;
 }
 
-Json json_of(const Subject& s, const std::vector<MeasuredFile>& measured) {
+Json json_of(const OpenedSampler& s, const std::vector<MeasuredFile>& measured) {
   const SamplerData& d = s.data;
   const auto certified = std::count_if(d.exact.begin(), d.exact.end(), [](const MajorantTree& tree) {
     return tree.status == BoundStatus::certified;
@@ -84,7 +84,7 @@ Json json_of(const Subject& s, const std::vector<MeasuredFile>& measured) {
   return json;
 }
 
-std::string bounds_text(const Subject& s) {
+std::string bounds_text(const OpenedSampler& s) {
   const auto certified =
       std::count_if(s.data.exact.begin(), s.data.exact.end(),
                     [](const MajorantTree& tree) { return tree.status == BoundStatus::certified; });
@@ -96,8 +96,8 @@ std::string bounds_text(const Subject& s) {
 
 }  // namespace
 
-void show_info(const Context& context, const std::string& command, const Subject& s) {
-  const std::vector<MeasuredFile> measured = measured_files(context, s);
+void show_info(const Context& context, const std::string& command, const OpenedSampler& s) {
+  const std::vector<MeasuredFile> measured = measured_files(s);
   if (context.json) {
     context.print_json(command, json_of(s, measured));
     return;
@@ -160,7 +160,7 @@ void add_info(CLI::App& app, Context& context, Run& run) {
       "  reflectree info --json ggx:alpha=0.1");
   command->callback([&context, &run, o] {
     run = [&context, o] {
-      show_info(context, "info", open_subject(context, o->subject, o->choices));
+      show_info(context, "info", open_sampler(context, o->subject, o->choices));
       return int(exit_success);
     };
   });

@@ -6,6 +6,6 @@
 namespace reflectree::cli {
 
 // The facts of a sampler on stdout, as lines or as JSON of `command`.
-void show_info(const Context& context, const std::string& command, const Subject& subject);
+void show_info(const Context& context, const std::string& command, const OpenedSampler& subject);
 
 }  // namespace reflectree::cli

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // list: the models; or a material's canonical text; or what a file holds.
-#include <filesystem>
-
 #include "commands.hpp"
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/brdf/material/registry.hpp"
-#include "reflectree/formats/material_file.hpp"
-#include "reflectree/formats/sampler_file.hpp"
+#include "reflectree/formats/format_table.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -63,37 +60,45 @@ int list_models(const Context& context) {
   return exit_success;
 }
 
-int list_one(const Context& context, const std::string& text) {
-  const bool is_sampler = names_sampler_file(context, text);
-  const std::string words = is_sampler ? load_sampler(context.locate(text)).material : text;
-  const Material material = parse(context, words, is_sampler ? context.locate(text) : "");
-  std::vector<std::string> members;
-  const bool is_file =
-      material.terms.size() == 1 && !material.terms[0].path.empty() && material.terms[0].member.empty();
-  if (is_file && !is_sampler) members = list_members(context.locate(material.terms[0].path));
-  // A table of many materials is none itself.
-  if (members.size() > 2 || (members.size() > 0 && members[0] != "nearest")) {
-    std::vector<std::string> whole;
-    for (const std::string& member : members) {
-      whole.push_back(to_text(Material{{{1, "", {}, material.terms[0].path, member}}}));
-    }
-    if (context.json) {
-      context.print_json("list", {{"members", whole}});
-    } else {
-      for (const std::string& member : whole) context.print(member + "\n");
-    }
-    return exit_success;
+// A file that a text names as a whole, and what may follow its '#'.
+struct ListedFile {
+  std::string path;
+  FileMembers kind = FileMembers::none;
+  std::vector<std::string> names;
+};
+ListedFile listed_file(const Material& material, const FilePlaces& places) {
+  const MaterialTerm& term = material.terms[0];
+  if (material.terms.size() > 1 || term.path.empty() || !term.member.empty()) return {};
+  const Bytes bytes = read_material_file(term.path, places);
+  const MaterialFormat& format = format_of(bytes, term.path);
+  if (!format.list_members) return {term.path, format.members, {}};
+  return {term.path, format.members, format.list_members(bytes, term.path)};
+}
+
+int list_materials(const Context& context, const ListedFile& file) {
+  std::vector<std::string> whole;
+  for (const std::string& name : file.names) whole.push_back(file_text(file.path, name));
+  if (context.json) {
+    context.print_json("list", {{"members", whole}});
+  } else {
+    for (const std::string& text : whole) context.print(text + "\n");
   }
-  const AnyBrdf f = load_material(context, material, is_sampler ? context.locate(text) : "");
+  return exit_success;
+}
+
+int list_one(const Context& context, const std::string& text) {
+  const FilePlaces places = context.places();
+  ListedFile file;
+  if (!names_sampler_file(text, places)) file = listed_file(parse_material(text, places), places);
+  if (file.kind == FileMembers::materials) return list_materials(context, file);  // is none itself
+  const AnyBrdf f = open_brdf(text, places);
   if (context.json) {
     context.print_json("list",
-                       {{"material", f.traits().name}, {"channels", f.channels()}, {"members", members}});
+                       {{"material", f.traits().name}, {"channels", f.channels()}, {"members", file.names}});
     return exit_success;
   }
   context.print(f.traits().name + "\n");
-  for (const std::string& member : members) {
-    context.say("look-up: " + to_text(Material{{{1, "", {}, material.terms[0].path, member}}}));
-  }
+  for (const std::string& name : file.names) context.say("look-up: " + file_text(file.path, name));
   return exit_success;
 }
 

@@ -7,23 +7,26 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "reflectree/text/edit_distance.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/formats/format_table.hpp"
+#include "reflectree/text/edit_distance.hpp"
 
 namespace {
 
 using namespace reflectree;
 using namespace reflectree::cli;
 
-constexpr const char* about =
-    "Exact importance sampling of any reflectance function.\n"
-    "\n"
-    "A MATERIAL is a sum of models and files, such as\n"
-    "  ggx:alpha=0.1                         a model ('reflectree list' shows them all)\n"
-    "  '0.3*lambert:rho=0.5 + ggx:alpha=0.1' a weighted sum\n"
-    "  paper_white.bsdf                      a measured file: RGL .bsdf or MERL .binary\n"
-    "  table.csv#name                        a member of a table of fits or networks\n"
-    "A SAMPLER is a file that 'reflectree build' saved.\n";
+std::string about() {
+  std::string files;
+  for (const MaterialFormat& format : material_formats())
+    files += fmt::format("  {:<37} {}\n", format.example, format.name);
+  return "Exact importance sampling of any reflectance function.\n"
+         "\n"
+         "A MATERIAL is a sum of models and files, such as\n"
+         "  ggx:alpha=0.1                         a model ('reflectree list' shows them all)\n"
+         "  '0.3*lambert:rho=0.5 + ggx:alpha=0.1' a weighted sum\n" +
+         files + "A SAMPLER is a file that 'reflectree build' saved.\n";
+}
 
 constexpr const char* footer =
     "The options stand before or after the subcommand; 'reflectree SUBCOMMAND --help' shows its own.\n"
@@ -78,7 +81,7 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<cha
 int dispatch(int argc, char** argv) {
   Context context;
   if (const char* data = std::getenv("REFLECTREE_DATA")) context.data = data;
-  CLI::App app(about, "reflectree");
+  CLI::App app(about(), "reflectree");
   app.set_version_flag("--version", std::string("reflectree ") + REFLECTREE_VERSION);
   app.require_subcommand(1);
   app.fallthrough();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "reflectree/verify/trials.hpp"
 
 namespace reflectree::cli {
@@ -46,7 +46,7 @@ Direction random_viewer(Pcg32& u) { return direction_from_angles(89.9f * degree 
 namespace {
 
 // The ratio T / (a M) at the first trial of exact mode for a random wo.
-RatioTrial first_trial_ratio(const Subject& subject) {
+RatioTrial first_trial_ratio(const OpenedSampler& subject) {
   return [&subject](Pcg32& u) {
     FirstTrial first;
     subject.sampler.exact.sample(random_viewer(u), u, first);
@@ -71,7 +71,7 @@ std::vector<double> parse_theta_o(const std::string& text) {
               "give degrees from 0 to below 90, with commas between them");
 }
 
-Overshoot measure_overshoot(const Subject& subject, std::uint64_t trials, std::uint64_t seed,
+Overshoot measure_overshoot(const OpenedSampler& subject, std::uint64_t trials, std::uint64_t seed,
                             const Host& host) {
   AttackOptions options;
   options.seed = seed;
@@ -81,7 +81,7 @@ Overshoot measure_overshoot(const Subject& subject, std::uint64_t trials, std::u
   return result;
 }
 
-Speed measure_speed(const Subject& subject, std::uint64_t seed) {
+Speed measure_speed(const OpenedSampler& subject, std::uint64_t seed) {
   Speed speed;
   SampleStatistics statistics;
   Pcg32 u(seed, 6);

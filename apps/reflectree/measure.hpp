@@ -17,7 +17,7 @@ struct Overshoot {
   AttackResult attack;
   OvershootMass mass;
 };
-Overshoot measure_overshoot(const Subject& subject, std::uint64_t trials, std::uint64_t seed,
+Overshoot measure_overshoot(const OpenedSampler& subject, std::uint64_t trials, std::uint64_t seed,
                             const Host& host);
 
 // Over random wo, one thread, the function called through AnyBrdf, evaluation and random numbers included.
@@ -25,6 +25,6 @@ struct Speed {
   double mean_trials = 0;  // of exact mode
   double exact_ns = 0, one_shot_ns = 0;
 };
-Speed measure_speed(const Subject& subject, std::uint64_t seed);
+Speed measure_speed(const OpenedSampler& subject, std::uint64_t seed);
 
 }  // namespace reflectree::cli

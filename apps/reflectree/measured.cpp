@@ -57,13 +57,13 @@ Json counts_json(const Counts& counts, std::uint64_t pairs) {
 
 }  // namespace
 
-std::vector<MeasuredFile> measured_files(const Context& context, const Subject& subject) {
+std::vector<MeasuredFile> measured_files(const OpenedSampler& subject) {
   std::vector<MeasuredFile> files;
-  for (const MaterialTerm& term : parse(context, subject.data.material, subject.beside).terms) {
+  for (const MaterialTerm& term : parse_material(subject.data.material, subject.places).terms) {
     if (term.path.empty()) continue;
-    const Bytes bytes = read_material_file(context, term.path, subject.beside);
-    files.push_back({to_text(Material{{{1, "", {}, term.path, term.member}}}),
-                     measured_facts(bytes, term.path, term.member)});
+    const Bytes bytes = read_material_file(term.path, subject.places);
+    if (auto facts = measured_facts(bytes, term.path, term.member))
+      files.push_back({file_text(term.path, term.member), *std::move(facts)});
   }
   return files;
 }

@@ -12,8 +12,8 @@ struct MeasuredFile {
   MeasuredFacts facts;
 };
 
-// One for each file that the subject's material names.
-std::vector<MeasuredFile> measured_files(const Context& context, const Subject& subject);
+// One for each file that the subject's material names and of whose format something is known.
+std::vector<MeasuredFile> measured_files(const OpenedSampler& subject);
 
 Json measured_json(const std::vector<MeasuredFile>& files);
 

@@ -7,7 +7,7 @@
 namespace reflectree::cli {
 
 // A material's part of a page, with `samples` exact directions a view.
-draw::ReportMaterial draw_material(const Subject& subject, const std::vector<double>& theta_o_deg,
+draw::ReportMaterial draw_material(const OpenedSampler& subject, const std::vector<double>& theta_o_deg,
                                    std::size_t samples, std::uint64_t seed);
 // Throws Error where it cannot.
 void make_folder(const std::string& path);

@@ -3,10 +3,10 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "measure.hpp"
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/npy.hpp"
+#include "reflectree/text/number_text.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -28,7 +28,7 @@ struct Samples {
 };
 
 template <class Draw>
-Samples draw_samples(const Subject& subject, Direction wo, const Options& o, std::uint64_t seed,
+Samples draw_samples(const OpenedSampler& subject, Direction wo, const Options& o, std::uint64_t seed,
                      const Draw& draw) {
   Samples samples;
   samples.columns = 4 + std::size_t(subject.f.channels());
@@ -70,7 +70,7 @@ int run_sample(const Context& context, const Options& o) {
     throw Error(fmt::format("{} is not above the surface", o.theta_o_deg), "--theta-o-deg",
                 "give degrees from 0 to below 90");
   }
-  const Subject subject = open_subject(context, o.subject, o.choices);
+  const OpenedSampler subject = open_sampler(context, o.subject, o.choices);
   const double degree = pi_v<double> / 180;
   const Direction wo = direction_from_angles(float(o.theta_o_deg * degree), float(o.phi_o_deg * degree));
   const Sampler<AnyBrdf>& s = subject.sampler;

@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subject.hpp"
 
-#include <chrono>
-#include <filesystem>
-#include <fstream>
-
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/formats/file.hpp"
-#include "reflectree/formats/material_file.hpp"
-#include "reflectree/formats/merl.hpp"
-#include "reflectree/formats/sampler_file.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree::cli {
 
-namespace fs = std::filesystem;
-
 namespace {
-
-std::string find(const Context& context, const std::string& path, const std::string& beside) {
-  std::error_code ignored;
-  if (!beside.empty() && fs::path(path).is_relative() && !fs::exists(path, ignored)) {
-    const fs::path neighbour = fs::path(beside).parent_path() / path;
-    if (fs::exists(neighbour, ignored)) return neighbour.string();
-  }
-  return context.locate(path);
-}
 
 Target parse_target(const std::string& text) {
   if (text == "norm") return {TargetKind::norm, 0};
@@ -74,12 +55,6 @@ void check_target(const Target& target, const AnyBrdf& f) {
       "--target", "channels count from 0");
 }
 
-Subject assemble(const std::string& text, AnyBrdf f, SamplerData data) {
-  auto packed = std::make_shared<const PackedSampler>(pack(data));
-  Sampler<AnyBrdf> sampler{ExactSampler<AnyBrdf>(f, packed), OneShotSampler<AnyBrdf>(f, packed)};
-  return {text, "", std::move(f), std::move(data), std::move(packed), std::move(sampler), {}, {}};
-}
-
 }  // namespace
 
 void add_build_choices(CLI::App& command, BuildChoices& choices) {
@@ -112,60 +87,21 @@ BuildOptions build_options(const Context& context, const BuildChoices& choices) 
   return options;
 }
 
-Material parse(const Context& context, const std::string& text, const std::string& beside) {
-  return parse_material(text, [&](const std::string& path) {
-    std::error_code ignored;
-    return fs::exists(find(context, path, beside), ignored);  // reading tells what is no file of a material
-  });
-}
-
-Bytes read_material_file(const Context& context, const std::string& path, const std::string& beside) {
-  // Named in texts and errors as the user wrote it, wherever it was found.
-  const std::string found = find(context, path, beside);
-  if (found != path) context.detail(path + ": found as " + found);
-  return read_file(found, max_merl_bytes);
-}
-
-AnyBrdf load_material(const Context& context, const Material& material, const std::string& beside) {
-  return make_brdf(material, [&](const std::string& path, const std::string& member) {
-    return read_brdf(read_material_file(context, path, beside), path, member);
-  });
-}
-
-bool names_sampler_file(const Context& context, const std::string& text) {
-  std::error_code ignored;
-  const std::string path = context.locate(text);
-  if (!fs::is_regular_file(path, ignored)) return false;
-  std::ifstream in(path, std::ios::binary);
-  Bytes start(8);
-  in.read(reinterpret_cast<char*>(start.data()), std::streamsize(start.size()));
-  return in.gcount() == 8 && is_sampler_file(start);
-}
-
-Subject open_subject(const Context& context, const std::string& text, const BuildChoices& choices) {
-  if (names_sampler_file(context, text)) {
+OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices) {
+  const FilePlaces places = context.places();
+  if (names_sampler_file(text, places)) {
     if (choices.given) {
       throw Error("options of building do not apply to a sampler that is built", text,
                   "leave them out, or name the material");
     }
-    const std::string path = context.locate(text);
-    SamplerData data = load_sampler(path);
-    AnyBrdf f = load_material(context, parse(context, data.material, path), path);
-    check_identity(data, f);
-    Subject subject = assemble(text, std::move(f), std::move(data));
-    subject.file_size = fs::file_size(path);
-    subject.beside = path;
-    return subject;
+    return open_sampler_file(text, places);
   }
   const BuildOptions options = build_options(context, choices);
-  AnyBrdf f = load_material(context, parse(context, text));
+  AnyBrdf f = open_brdf(text, places);
   check_target(options.target, f);
-  const auto start = std::chrono::steady_clock::now();
-  SamplerData data = build(f, options, context.host("building"));
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  context.detail(fmt::format("built in {:.2f} s, {} evaluations", took.count(), data.report.evaluations));
-  Subject subject = assemble(text, std::move(f), std::move(data));
-  subject.build_seconds = took.count();
+  OpenedSampler subject = build_named_sampler(text, std::move(f), places, options, context.host("building"));
+  context.detail(fmt::format("built in {:.2f} s, {} evaluations", *subject.build_seconds,
+                             subject.data.report.evaluations));
   return subject;
 }
 

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a subcommand works on: a BRDF with its sampler, from a material's text or from a sampler file.
+// The options of building, and what a subcommand works on: a BRDF with its sampler.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
-#include <optional>
 
 #include "context.hpp"
-#include "reflectree/brdf/material/material.hpp"
-#include "reflectree/formats/bytes.hpp"
-#include "reflectree/sampler/sampler.hpp"
+#include "reflectree/formats/open.hpp"
 
 namespace reflectree::cli {
 
@@ -24,25 +20,7 @@ void add_build_choices(CLI::App& command, BuildChoices& choices);
 // Throws Error for words that mean nothing.
 BuildOptions build_options(const Context& context, const BuildChoices& choices);
 
-struct Subject {
-  std::string text;    // as the user wrote it
-  std::string beside;  // the sampler file, beside which its material may lie; empty: none
-  AnyBrdf f;
-  SamplerData data;
-  std::shared_ptr<const PackedSampler> packed;
-  Sampler<AnyBrdf> sampler;
-  std::optional<double> build_seconds;     // of a material
-  std::optional<std::uint64_t> file_size;  // of a sampler file
-};
-
-// Files are looked for in the current folder, beside `beside` where that is given, and in the data folder.
-Material parse(const Context& context, const std::string& text, const std::string& beside = "");
-AnyBrdf load_material(const Context& context, const Material& material, const std::string& beside = "");
-// Where a material's file is, and its bytes.
-Bytes read_material_file(const Context& context, const std::string& path, const std::string& beside);
-bool names_sampler_file(const Context& context, const std::string& text);
-
-// Builds a material's sampler, or loads a sampler file with its material. Throws Error, Cancelled.
-Subject open_subject(const Context& context, const std::string& text, const BuildChoices& choices);
+// As reflectree::open_sampler, with the user's choices. Throws Error, Cancelled.
+OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices);
 
 }  // namespace reflectree::cli

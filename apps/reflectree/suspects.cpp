@@ -11,11 +11,7 @@ WayIn with_fault(WayIn way, const std::string& fault) {
   if (fault == "bent") return bent(std::move(way), 1);
   if (fault == "lost-support") {
     return lost_support(
-        std::move(way),
-        [](Direction wo) {
-          return Direction{-wo.x, -wo.y, wo.z};
-        },
-        0.99f);
+        std::move(way), [](Direction wo) { return mirror_direction(wo); }, 0.99f);
   }
   if (fault == "scaled-pdf") return scaled_pdf(std::move(way), 1.02f);
   if (fault == "scaled-weight") return scaled_weight(std::move(way), 1.02f);
@@ -37,7 +33,7 @@ std::string fault_list() {
   return list;
 }
 
-Subject with_fault(const std::string& fault, Subject subject) {
+OpenedSampler with_fault(const std::string& fault, OpenedSampler subject) {
   if (fault != "halved-bound") return subject;
   subject.data = with_halved_bounds(std::move(subject.data));
   subject.packed = std::make_shared<const PackedSampler>(pack(subject.data));
@@ -46,7 +42,7 @@ Subject with_fault(const std::string& fault, Subject subject) {
   return subject;
 }
 
-Suspect suspect_with_fault(const Subject& subject, const std::string& fault) {
+Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& fault) {
   Suspect s = suspect(subject.sampler, subject.f, &subject.data);
   for (WayIn& way : s.ways) way = with_fault(std::move(way), fault);
   if (fault == "scaled-pdf") {

@@ -12,9 +12,9 @@ const std::vector<std::string>& fault_names();
 std::string fault_list();
 
 // The subject with a fault in its data ("halved-bound"); untouched for any other.
-Subject with_fault(const std::string& fault, Subject subject);
+OpenedSampler with_fault(const std::string& fault, OpenedSampler subject);
 
 // Borrows the subject. Any other fault is planted in every way into the sampler.
-Suspect suspect_with_fault(const Subject& subject, const std::string& fault);
+Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& fault);
 
 }  // namespace reflectree::cli

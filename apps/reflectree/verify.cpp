@@ -25,7 +25,7 @@ int run_verify(const Context& context, const Options& o) {
   options.random_elevations = o.random_elevations;
   options.effort = o.effort;
   options.seed = context.seed;
-  const Subject subject = with_fault(o.plant, open_subject(context, o.subject, o.choices));
+  const OpenedSampler subject = with_fault(o.plant, open_sampler(context, o.subject, o.choices));
   Verdicts verdicts(context, o.plant);
   options.on_check = [&](const CheckResult& check) { verdicts.add(check); };
   options.on_figure = [&](const VerifyFigure& figure) { verdicts.add(figure); };

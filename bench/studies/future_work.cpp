@@ -48,12 +48,13 @@ constexpr const char* row_head =
     "(*) |";
 
 // The tables of the whole sampler on each map; theta_o 10, 45, 75, 85.
-void show_maps(std::span<const Environment> lights) {
+void show_maps(std::span<const Illumination> lights) {
   head("Area-preserving and half-vector map against the disk", row_head, 10);
   constexpr std::pair<const char*, PaperMap> maps[] = {
       {"disk", PaperMap::disk}, {"equal-area", PaperMap::equal_area}, {"half-vector", PaperMap::half_vector}};
   for (const char* text : materials) {
-    const Subject s = subject_of(text, make_brdf(parse_material(text)), {10, 45, 75, 85}, lights, options());
+    const JudgedSubject s =
+        subject_of(text, make_brdf(parse_material(text)), {10, 45, 75, 85}, lights, options());
     double first = 0;
     for (const auto& [name, map] : maps) {
       PaperOptions o;
@@ -131,7 +132,7 @@ std::vector<float> disk_cells(const AnyBrdf& f, Direction wo, int size) {
   return cells;
 }
 
-void show_wavelets(std::span<const Environment> lights) {
+void show_wavelets(std::span<const Illumination> lights) {
   head("Wavelets in the place of the quadtree, for one wo at 45°",
        "| material | step | leaves or kept | KiB | build s (*) | trials | worst bias | worst variance | × "
        "floor "
@@ -139,7 +140,7 @@ void show_wavelets(std::span<const Environment> lights) {
        10);
   const Direction wo = wo_at_deg(one_deg);
   for (const char* text : materials) {
-    const Subject s = subject_of(text, make_brdf(parse_material(text)), {one_deg}, lights, options());
+    const JudgedSubject s = subject_of(text, make_brdf(parse_material(text)), {one_deg}, lights, options());
     const double start = thread_seconds();
     const PaperSampler tree(s.f, {}, wo, {});
     const double seconds = thread_seconds() - start;
@@ -168,7 +169,7 @@ void show_qmc() {
       "theta_o = 45°, and the slope from N = 4; Owen-scrambled Sobol' points place the first trial.\n\n"
       "| material | choice of the leaf | n_max | random | slope | Sobol' | slope | gain in samples "
       "|\n|---|---|---|---|---|---|---|---|\n");
-  const std::vector<Environment> lights{procedural_environments()[1]};
+  const std::vector<Illumination> lights{procedural_illuminations()[1]};
   StudyOptions o;
   o.curve_repeats = 256, o.curve_samples = 1024;
   const Direction wo = wo_at_deg(one_deg);
@@ -196,7 +197,7 @@ void show_qmc() {
   std::printf("\n");
 }
 
-void show_steps(std::span<const Environment> lights) {
+void show_steps(std::span<const Illumination> lights) {
   head("Faster, step by step, from the paper's scheme to ours", row_head, 10);
   struct Step {
     const char* name;
@@ -214,7 +215,8 @@ void show_steps(std::span<const Environment> lights) {
   then("+ rejected ones start again from the root", [](PaperOptions& o) { o.retry_from_root = true; });
   then("+ half-vector map", [](PaperOptions& o) { o.map = PaperMap::half_vector, o.negligible = 1e-3; });
   for (const char* text : materials) {
-    const Subject s = subject_of(text, make_brdf(parse_material(text)), {10, 45, 75, 85}, lights, options());
+    const JudgedSubject s =
+        subject_of(text, make_brdf(parse_material(text)), {10, 45, 75, 85}, lights, options());
     double first = 0;
     for (const Step& step : steps) {
       double seconds = 0;
@@ -251,7 +253,7 @@ void show_steps(std::span<const Environment> lights) {
 int main(int argc, char** argv) {
   CLI::App app("What the paper left for later, one ablation each on the paper's own sampler, as Markdown.");
   return run_program(app, argc, argv, [] {
-    const std::vector<Environment> lights{procedural_environments()[1]};
+    const std::vector<Illumination> lights{procedural_illuminations()[1]};
     std::printf(
         "# What the paper left for later\n\nAblations on the paper's own sampler. Columns with (*) are "
         "timings. "

@@ -18,16 +18,16 @@ namespace reflectree::study {
 inline Direction wo_at_deg(double deg) { return direction_from_angles(float(deg * pi_v<double> / 180), 0.f); }
 
 // A function with what is true of it at some elevations.
-struct Subject {
+struct JudgedSubject {
   std::string name;
   AnyBrdf f;
   std::vector<double> thetas_deg;
   std::vector<double> albedo, albedo_error;
   std::vector<ReferenceDraws> reference;
 };
-inline Subject subject_of(std::string name, const AnyBrdf& f, std::vector<double> thetas_deg,
-                          std::span<const Environment> lights, const StudyOptions& o) {
-  Subject s{std::move(name), f, std::move(thetas_deg), {}, {}, {}};
+inline JudgedSubject subject_of(std::string name, const AnyBrdf& f, std::vector<double> thetas_deg,
+                                std::span<const Illumination> lights, const StudyOptions& o) {
+  JudgedSubject s{std::move(name), f, std::move(thetas_deg), {}, {}, {}};
   const TargetFunction target = target_function(f);
   const auto exact = find_sampler("exact")->make({f, {}, {}, nullptr}, {});
   for (const double deg : s.thetas_deg) {
@@ -47,8 +47,8 @@ struct Judged {
   double dead = 0;  // mean share
 };
 
-inline Judged judged(const AnySampler<Spectrum>& sampler, const Subject& s,
-                     std::span<const Environment> lights, const StudyOptions& o) {
+inline Judged judged(const AnySampler<Spectrum>& sampler, const JudgedSubject& s,
+                     std::span<const Illumination> lights, const StudyOptions& o) {
   Judged j;
   double sum = 0, logs = 0, n = 0;
   Pcg32 g(5, 5);
@@ -69,8 +69,8 @@ inline Judged judged(const AnySampler<Spectrum>& sampler, const Subject& s,
   (void)used;
   j.x_floor = j.ns / floor;
   for (std::size_t i = 0; i < s.thetas_deg.size(); ++i) {
-    const Cell c = measure_cell(sampler, {}, wo_at_deg(s.thetas_deg[i]), s.albedo[i], s.albedo_error[i],
-                                lights, o, 7 + i, &s.reference[i]);
+    const StudyCell c = measure_cell(sampler, {}, wo_at_deg(s.thetas_deg[i]), s.albedo[i], s.albedo_error[i],
+                                     lights, o, 7 + i, &s.reference[i]);
     if (std::abs(c.bias) >= std::abs(j.worst_bias)) j.worst_bias = c.bias, j.interval = c.bias_interval;
     j.worst_variance = max(j.worst_variance, c.target_variance);
     j.dead += c.dead / double(s.thetas_deg.size());

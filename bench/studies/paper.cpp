@@ -49,7 +49,7 @@ draw::Figure plot(const std::vector<Law>& laws) {
 }
 
 bool show_law(const AnyBrdf& f, const std::string& folder) {
-  const std::vector<Environment> lights{procedural_environments()[1]};
+  const std::vector<Illumination> lights{procedural_illuminations()[1]};
   const double albedo = reference_albedo(target_function(f), curve_wo).value;
   StudyOptions o;
   o.curve_repeats = 512, o.curve_samples = 4096;
@@ -110,7 +110,7 @@ void show_precomputation(const AnyBrdf& f) {
     const AnySampler<Spectrum> any("paper", paper, paper.bytes());
     double bias = 0, variance = 0;
     for (std::size_t i = 0; i < wos.size(); ++i) {
-      const study::Cell c = measure_cell(any, {}, wos[i], albedo[i], 0, {}, o, 7);
+      const study::StudyCell c = measure_cell(any, {}, wos[i], albedo[i], 0, {}, o, 7);
       bias = max(bias, std::abs(c.bias)), variance = max(variance, c.target_variance);
     }
     UniformBits u{Pcg32(3)};

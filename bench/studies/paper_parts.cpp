@@ -51,9 +51,9 @@ draw::Figure tree_picture(const char* text, const AnyBrdf& f, const PaperTree& t
 }
 
 // The mean square error of the mean of a group, averaged over rotations: what is left of the mean square of
-// the group's radiance without that of independent groups (environment.hpp).
+// the group's radiance without that of independent groups (illumination.hpp).
 template <class Group>
-double grouped_error(const Group& group, std::size_t groups, const Environment& light) {
+double grouped_error(const Group& group, std::size_t groups, const Illumination& light) {
   double within = 0, across = 0;
   Draws before;
   const auto radiance = [&](const Draws& a, const Draws& b) {
@@ -155,14 +155,14 @@ void show_few_against_many() {
       "adaptive ones are divided among the leaves in one call.\n\n| material | light | 5² uniform | 10² "
       "uniform | "
       "10² adaptive | 10² uniform / adaptive |\n|---|---|---|---|---|---|\n");
-  const std::vector<Environment> lights = procedural_environments();
+  const std::vector<Illumination> lights = procedural_illuminations();
   const Direction wo = wo_at_deg(45);
   constexpr std::size_t groups = 400;
   for (const char* text : {"lambert", "phong:kd=0.3,ks=0.5,n=20", "ggx:alpha=0.3", "ggx:alpha=0.1"}) {
     const AnyBrdf f = brdf_of(text);
     const double albedo = reference_albedo(target_function(f), wo).value;
     const PaperSampler paper(f, {}, wo, {});
-    for (const Environment& light : lights) {
+    for (const Illumination& light : lights) {
       const auto uniform = [&](int side) {
         return [&f, wo, side](std::size_t g) {
           Pcg32 u(g + 1, 7);
@@ -196,8 +196,8 @@ void show_time() {
   constexpr const char* materials[] = {"lambert", "ggx:alpha=0.3", "ggx:alpha=0.05", "plastic"};
   StudyOptions o;
   o.samples = 1U << 15U;
-  const std::vector<Environment> lights{procedural_environments()[1]};
-  std::vector<Subject> subjects;
+  const std::vector<Illumination> lights{procedural_illuminations()[1]};
+  std::vector<JudgedSubject> subjects;
   for (const char* text : materials) {
     subjects.push_back(subject_of(text, brdf_of(text), {45}, lights, o));
     std::printf(" %s |", text);
@@ -205,7 +205,7 @@ void show_time() {
   std::printf("\n|---|---|---|---|---|\n");
   for (const SamplerInfo& info : samplers()) {
     std::printf("| %s |", info.name == "textbook" ? "textbook (direct)" : std::string(info.name).c_str());
-    for (const Subject& s : subjects) {
+    for (const JudgedSubject& s : subjects) {
       const auto sampler = info.make({s.f, parse_material(s.name), {}, nullptr}, {});
       if (!sampler) {
         std::printf(" – |");

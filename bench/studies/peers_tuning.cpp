@@ -24,14 +24,14 @@ double thread_seconds() {
 
 constexpr double angles_deg[] = {0, 30, 60, 75, 85};
 
-struct Subject {
+struct TuningSubject {
   std::string name;
   PeerSubject peer;
   std::vector<double> albedo;  // at each angle, by cubature
 };
 
-Subject subject_of(std::string name, PeerSubject peer) {
-  Subject subject{std::move(name), std::move(peer), {}};
+TuningSubject subject_of(std::string name, PeerSubject peer) {
+  TuningSubject subject{std::move(name), std::move(peer), {}};
   const TargetFunction f = target_function(subject.peer.f, subject.peer.target);
   for (const double deg : angles_deg) {
     const Direction wo = direction_from_angles(float(deg * double(pi) / 180), 0.f);
@@ -40,8 +40,8 @@ Subject subject_of(std::string name, PeerSubject peer) {
   return subject;
 }
 
-std::vector<Subject> subjects() {
-  std::vector<Subject> all;
+std::vector<TuningSubject> subjects() {
+  std::vector<TuningSubject> all;
   for (const char* text : {"lambert", "ggx:alpha=0.3", "ggx:alpha=0.1", "plastic:alpha=0.1"}) {
     const Material material = parse_material(text);
     all.push_back(subject_of(text, {make_brdf(material), material, {}}));
@@ -62,7 +62,8 @@ struct Measured {
   double kib = 0, seconds = 0, variance = 0, worst = 0, sigmas = 0, bias = 0;
 };
 
-Measured measure(const Subject& subject, MakeTabulated* make, const TabulatedTuning& tuning, int samples) {
+Measured measure(const TuningSubject& subject, MakeTabulated* make, const TabulatedTuning& tuning,
+                 int samples) {
   Measured out;
   const double start = thread_seconds();
   const MadePeer sampler = make(subject.peer, {}, tuning);
@@ -172,9 +173,9 @@ int main(int argc, char** argv) {
   app.add_option("--samples", samples, "a cell")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--only", only, "competitors whose name contains this");
   return study::run_program(app, argc, argv, [&] {
-    const std::vector<Subject> all = subjects();
+    const std::vector<TuningSubject> all = subjects();
     std::printf("| peer | KiB | build s | variance * KiB | worst bias, sigmas |");
-    for (const Subject& subject : all) std::printf(" %s |", subject.name.c_str());
+    for (const TuningSubject& subject : all) std::printf(" %s |", subject.name.c_str());
     std::printf("\n|---|---|---|---|---|");
     for (std::size_t i = 0; i < all.size(); ++i) std::printf("---|");
     std::printf("\n");
@@ -182,7 +183,7 @@ int main(int argc, char** argv) {
       if (variant.text.find(only) == std::string::npos) continue;
       double kib = 0, seconds = 0, product = 0, bias = 0, sigmas = 0;
       std::string cells;
-      for (const Subject& subject : all) {
+      for (const TuningSubject& subject : all) {
         const Measured m = measure(subject, variant.make, variant.tuning, samples);
         const double n = double(all.size());
         kib += m.kib / n, seconds += m.seconds / n,

@@ -151,7 +151,7 @@ void show_competitors(const std::string& folder) {
       "|\n|---|---|---|---|---|\n");
   StudyOptions o;
   o.samples = 1U << 14U;
-  std::vector<Subject> subjects;
+  std::vector<JudgedSubject> subjects;
   for (const float alpha : alphas) subjects.push_back(subject_of("", ggx(alpha), {10, 45, 75, 85}, {}, o));
   const std::vector<double> x(std::begin(alphas), std::end(alphas));
   std::vector<LogCurve> curves;
@@ -162,7 +162,7 @@ void show_competitors(const std::string& folder) {
       continue;
     }
     std::vector<double> kib, seconds, floor, variance;
-    for (const Subject& s : subjects) {
+    for (const JudgedSubject& s : subjects) {
       const double from = thread_seconds();
       const auto sampler = info.make({s.f, {}, {}, nullptr}, {});
       seconds.push_back(thread_seconds() - from);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reflectree/error.hpp"
+#include "reflectree/formats/format_table.hpp"
 
 namespace reflectree {
 namespace {
@@ -26,7 +27,6 @@ constexpr Magic magics[] = {
     {"\x28\xb5\x2f\xfd"sv, {"compressed by Zstandard", "unpack it with unzstd"}},
     {"7z\xbc\xaf\x27\x1c"sv, {"a 7-Zip archive", unpack}},
     {"Rar!"sv, {"a RAR archive", unpack}},
-    {"tensor_file\0"sv, {"a measured material (RGL tensor_file)", ""}},
     {"\x89RFL\r\n\x1a\n"sv, {"a sampler file", ""}},
     {"\x89PNG"sv, {"a PNG picture", ""}},
     {"\xff\xd8\xff"sv, {"a JPEG picture", ""}},
@@ -80,6 +80,7 @@ FileKind markup(std::string_view text) {
 
 FileKind recognise_file(ByteView bytes) {
   if (bytes.empty()) return {"empty", "fetch the file again"};
+  if (const MaterialFormat* format = find_format(bytes)) return {format->kind, ""};
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), looked_at));
   for (const Magic& magic : magics) {
     if (all.rfind(magic.bytes, 0) == 0) return magic.kind;

@@ -106,7 +106,8 @@ double PaperSampler::density(const Reading& r, Direction wi) const {
 std::optional<Direction> PaperSampler::trial(const PaperTree& tree, const PaperNode& leaf, double u, double v,
                                              double height) const {
   const PaperBox box = clip_to_disk(leaf);
-  const auto wi = lift(options_.map, tree.wo, box.x0 + (box.x1 - box.x0) * u, box.y0 + (box.y1 - box.y0) * v);
+  const auto wi =
+      direction_at(options_.map, tree.wo, box.x0 + (box.x1 - box.x0) * u, box.y0 + (box.y1 - box.y0) * v);
   if (!wi) return std::nullopt;
   const double t = double(target_(eval(f_, tree.wo, *wi))) * double(wi->z) *
                    solid_angle_per_area(options_.map, tree.wo, *wi);

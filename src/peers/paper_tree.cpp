@@ -22,7 +22,8 @@ std::size_t paper_grid(const AnyBrdf& f, Target target, Direction wo, PaperMap m
   const double step = double(node.size) / side;
   for (int j = 0; j < side; ++j) {
     for (int i = 0; i < side; ++i) {
-      const auto w = lift(map, wo, double(node.x) + (i + 0.5) * step, double(node.y) + (j + 0.5) * step);
+      const auto w =
+          direction_at(map, wo, double(node.x) + (i + 0.5) * step, double(node.y) + (j + 0.5) * step);
       if (w) wi.push_back(*w), place.push_back(std::size_t(j * side + i));
     }
   }

@@ -5,52 +5,74 @@
 #include "textbook.hpp"
 
 #include "reflectree/brdf/material/registry.hpp"
+#include "reflectree/brdf/models/all.hpp"
 
 namespace reflectree {
 
 namespace {
 
-float mean(Rgb c) { return (c.r + c.g + c.b) / 3; }
+using Lobes = std::vector<WeightedLobe>;
 
-struct Term {
-  const MaterialTerm& term;
-  const ModelInfo& info;
-  Rgb operator()(std::string_view name) const {
-    for (std::size_t i = 0; i < info.parameters.size(); ++i) {
-      if (info.parameters[i].name == name) return term.values[i];
-    }
-    return {};
+float mean(Rgb c) { return (c.r + c.g + c.b) / 3; }
+WeightedLobe cosine(Rgb albedo) { return {mean(albedo), ProposalLobe{}}; }
+
+// lobes_of(model, cos_theta_o): for one elevation of wo; weights are albedos. A model for which no sampler
+// was published has no such function.
+Lobes lobes_of(const Lambert& m, float) { return {cosine(m.rho)}; }
+Lobes lobes_of(const OrenNayar& m, float) { return {cosine(m.rho)}; }
+Lobes lobes_of(const Ggx& m, float) { return {{mean(m.f0), {LobeKind::ggx, m.alpha}}}; }
+Lobes lobes_of(const Phong& m, float) { return {cosine(m.kd), {mean(m.ks), {LobeKind::power, m.n}}}; }
+Lobes lobes_of(const Ward& m, float) {
+  return {cosine(m.kd), {mean(m.ks), {LobeKind::gaussian, m.alpha_x, m.alpha_y}}};
+}
+Lobes lobes_of(const CookTorrance& m, float) {
+  return {cosine(m.kd), {mean(m.ks * m.f0), {LobeKind::gaussian, m.alpha, m.alpha}}};
+}
+// Half and half, section 3 of the paper.
+Lobes lobes_of(const AshikhminShirley& m, float) {
+  return {{0.5f, ProposalLobe{}}, {0.5f, {LobeKind::half_power, m.n_x, m.n_y}}};
+}
+// A lobe a channel: axes and exponents may differ.
+Lobes lobes_of(const Lafortune& m, float) {
+  Lobes lobes{cosine(m.kd)};
+  for (int c = 0; c < 3; ++c) {
+    const Vec3<float> axis{channel_value(m.cx, c), channel_value(m.cy, c), channel_value(m.cz, c)};
+    lobes.push_back({channel_value(m.ks, c) / 3, {LobeKind::power, channel_value(m.n, c), 1, axis}});
   }
+  return lobes;
+}
+// By Fresnel reflectance of wo, as rough plastics are shipped.
+Lobes lobes_of(const Plastic& m, float cos_theta_o) {
+  const float fresnel = m.f0 + (1 - m.f0) * std::pow(1 - cos_theta_o, 5.f);
+  return {{(1 - fresnel) * mean(m.kd), ProposalLobe{}}, {fresnel, {LobeKind::ggx, m.alpha}}};
+}
+
+struct Textbook {
+  std::string_view model;
+  Lobes (*lobes)(std::span<const Rgb> values, float cos_theta_o);
 };
 
-// For one elevation of wo; empty: no sampler was published. Weights are albedos.
-std::vector<WeightedLobe> lobes_of(const Term& p, float cos_theta_o) {
-  const std::string_view m = p.info.name;
-  const WeightedLobe cosine{mean(p("kd")), ProposalLobe{}};
-  if (m == "lambert" || m == "oren_nayar") return {{mean(p("rho")), ProposalLobe{}}};
-  if (m == "ggx") return {{mean(p("f0")), {LobeKind::ggx, p("alpha").r}}};
-  if (m == "phong") return {cosine, {mean(p("ks")), {LobeKind::power, p("n").r}}};
-  if (m == "ward") return {cosine, {mean(p("ks")), {LobeKind::gaussian, p("alpha_x").r, p("alpha_y").r}}};
-  if (m == "cook_torrance") {
-    const float a = p("alpha").r, specular = mean(p("ks") * p("f0"));
-    return {cosine, {specular, {LobeKind::gaussian, a, a}}};
+// The models that have one.
+const std::vector<Textbook>& textbooks() {
+  static const std::vector<Textbook> table = [] {
+    std::vector<Textbook> rows;
+    for_each_model([&rows]<class M>(std::type_identity<M>) {
+      if constexpr (requires(const M& m) { lobes_of(m, 1.f); }) {
+        rows.push_back({M::describe().name, [](std::span<const Rgb> values, float cos_theta_o) {
+                          return lobes_of(model_from_values<M>(values), cos_theta_o);
+                        }});
+      }
+    });
+    return rows;
+  }();
+  return table;
+}
+
+const Textbook* find_textbook(std::string_view model) {
+  for (const Textbook& row : textbooks()) {
+    if (row.model == model) return &row;
   }
-  if (m == "ashikhmin_shirley") {  // half and half, section 3 of the paper
-    return {{0.5f, ProposalLobe{}}, {0.5f, {LobeKind::half_power, p("n_x").r, p("n_y").r}}};
-  }
-  if (m == "lafortune") {  // a lobe a channel: axes and exponents may differ
-    std::vector<WeightedLobe> lobes{cosine};
-    for (int c = 0; c < 3; ++c) {
-      const auto of = [&](std::string_view name) { return channel_value(p(name), c); };
-      lobes.push_back({of("ks") / 3, {LobeKind::power, of("n"), 1, {of("cx"), of("cy"), of("cz")}}});
-    }
-    return lobes;
-  }
-  if (m == "plastic") {  // by Fresnel reflectance of wo, as rough plastics are shipped
-    const float f0 = p("f0").r, fresnel = f0 + (1 - f0) * std::pow(1 - cos_theta_o, 5.f);
-    return {{(1 - fresnel) * mean(p("kd")), ProposalLobe{}}, {fresnel, {LobeKind::ggx, p("alpha").r}}};
-  }
-  return {};
+  return nullptr;
 }
 
 }  // namespace
@@ -61,11 +83,12 @@ std::optional<LobeMixture> textbook_mixture(const Material& material) {
   for (std::size_t row = 0; row < rows; ++row) {
     std::vector<WeightedLobe> all;
     for (const MaterialTerm& term : material.terms) {
-      const ModelInfo* info = find_model(term.model);
-      if (!info) return std::nullopt;
-      auto lobes = lobes_of({term, *info}, float(std::cos(row_theta_o(row, rows))));
-      if (lobes.empty()) return std::nullopt;
-      for (WeightedLobe& l : lobes) all.push_back({l.weight * term.weight, l.lobe});
+      const Textbook* textbook = find_textbook(term.model);
+      if (!textbook) return std::nullopt;
+      const float cos_theta_o = float(std::cos(row_theta_o(row, rows)));
+      for (const WeightedLobe& l : textbook->lobes(term.values, cos_theta_o)) {
+        all.push_back({l.weight * term.weight, l.lobe});
+      }
     }
     std::erase_if(all, [](const WeightedLobe& l) { return !(l.weight > 0); });
     if (all.empty()) return std::nullopt;

@@ -51,8 +51,8 @@ double sum_of(const Spectrum& w) {
   return sum;
 }
 
-// The mean of w.w' C over the pairs of each group: the mean square of the mean radiance; environment.hpp.
-double mean_product(std::span<const DirectionSample<Spectrum>> draws, const Environment& light) {
+// The mean of w.w' C over the pairs of each group: the mean square of the mean radiance; illumination.hpp.
+double mean_product(std::span<const DirectionSample<Spectrum>> draws, const Illumination& light) {
   double sum = 0;
   for (std::size_t from = 0; from + group <= draws.size(); from += group) {
     for (std::size_t i = from + 1; i < from + group; ++i) {
@@ -129,22 +129,22 @@ Weights weights_by_density(const AnySampler<Spectrum>& sampler, const Target& ta
 }  // namespace
 
 ReferenceDraws reference_draws(const AnySampler<Spectrum>& exact, Direction wo,
-                               std::span<const Environment> lights, const StudyOptions& o,
+                               std::span<const Illumination> lights, const StudyOptions& o,
                                std::uint64_t seed) {
   UniformBits u{Pcg32(seed, 5)};
   ReferenceDraws reference{draws_of(exact, wo, o.samples, u), {}};
-  for (const Environment& light : lights) reference.products.push_back(mean_product(reference.draws, light));
+  for (const Illumination& light : lights) reference.products.push_back(mean_product(reference.draws, light));
   return reference;
 }
 
-Cell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Direction wo, double albedo,
-                  double albedo_error, std::span<const Environment> lights, const StudyOptions& o,
-                  std::uint64_t seed, const ReferenceDraws* reference) {
+StudyCell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Direction wo, double albedo,
+                       double albedo_error, std::span<const Illumination> lights, const StudyOptions& o,
+                       std::uint64_t seed, const ReferenceDraws* reference) {
   UniformBits u{Pcg32(seed, 1)};
   Draws draws = draws_of(sampler, wo, o.samples, u);
   Moments of_target;
   Weights weights = weights_of(draws, target, of_target);
-  Cell cell;
+  StudyCell cell;
   for (const auto& d : draws)
     cell.dead += !(d.weight.channels() && target(d.weight) > 0) / double(draws.size());
   if (reference && sampler.has_pdf()) {

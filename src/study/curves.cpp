@@ -30,7 +30,7 @@ using Sums = std::vector<double>;  // a channel
 // The running sums of one run at n = 1, 4, 16, ...: at[light][step][channel].
 using Run = std::vector<std::vector<Sums>>;
 
-Run run(const AnySampler<Spectrum>& sampler, Direction wo, std::span<const Environment> lights,
+Run run(const AnySampler<Spectrum>& sampler, Direction wo, std::span<const Illumination> lights,
         const Rotation& rotate, std::span<const std::uint32_t> steps, std::uint64_t seed, bool stratified) {
   Run at(lights.size());
   std::vector<Sums> sum(lights.size());
@@ -60,7 +60,7 @@ Run run(const AnySampler<Spectrum>& sampler, Direction wo, std::span<const Envir
 }  // namespace
 
 std::vector<ErrorCurve> measure_curves(const AnySampler<Spectrum>& sampler, Direction wo, double albedo,
-                                       std::span<const Environment> lights, const StudyOptions& o,
+                                       std::span<const Illumination> lights, const StudyOptions& o,
                                        std::uint64_t seed) {
   constexpr int runs = 4;  // with one rotation
   std::vector<std::uint32_t> steps;

@@ -62,7 +62,7 @@ Figure error_figure(const MaterialResult& m, std::size_t light, const std::strin
   constexpr std::array<std::uint32_t, 8> steps{1, 4, 16, 64, 256, 1024, 4096, 16384};
   for (const SamplerResult& s : m.samplers) {
     if (at >= s.cells.size() || light >= s.cells[at].error.size()) continue;
-    const Cell& cell = s.cells[at];
+    const StudyCell& cell = s.cells[at];
     const double bias = sqr(cell.sure_bias()), one = cell.error[light] - o.mean_of * bias;
     add(s.sampler, s, steps, [&](std::size_t i) { return one / steps[i] + bias; });
     if (s.sampler != "one-shot-monotone" || light >= s.curves.size()) continue;
@@ -131,7 +131,7 @@ Figure bar_figure(const std::string& title, const std::string& unit, std::span<c
   return f;
 }
 
-Figure heat_figure(const MaterialResult& m, std::span<const Environment> lights, const StudyOptions& o) {
+Figure heat_figure(const MaterialResult& m, std::span<const Illumination> lights, const StudyOptions& o) {
   std::vector<const SamplerResult*> rows;
   for (const SamplerResult& s : m.samplers) {
     if (s.cells.size() == o.theta_o_deg.size()) rows.push_back(&s);
@@ -143,7 +143,7 @@ Figure heat_figure(const MaterialResult& m, std::span<const Environment> lights,
            "Cost against the best",
            "RMSE squared times time of each sampler, by angle and by light.",
            {}};
-  const auto cost = [](const Cell& c, std::size_t e) {
+  const auto cost = [](const StudyCell& c, std::size_t e) {
     return std::log(c.error[e] * c.sample_ns / c.floor_ns);
   };
   HeatCells cells;

@@ -21,7 +21,7 @@ std::uint64_t seed_of(std::uint64_t seed, const std::string& name, std::uint64_t
   return hash ^ (hash >> 31U);
 }
 
-void measure_time(const AnySampler<Spectrum>& sampler, Direction wo, const StudyOptions& o, Cell& cell) {
+void measure_time(const AnySampler<Spectrum>& sampler, Direction wo, const StudyOptions& o, StudyCell& cell) {
   constexpr std::size_t pool = 512;
   UniformBits u{Pcg32(o.seed, 9)};
   std::vector<Direction> wos(pool), wis(pool, Direction{0, 0, 1});
@@ -49,7 +49,7 @@ void measure_time(const AnySampler<Spectrum>& sampler, Direction wo, const Study
 
 SamplerResult measure_sampler(const SamplerInfo& info, const AnySampler<Spectrum>& sampler,
                               const StudyMaterial& material, const MaterialResult& known,
-                              std::span<const ReferenceDraws> reference, std::span<const Environment> lights,
+                              std::span<const ReferenceDraws> reference, std::span<const Illumination> lights,
                               const StudyOptions& o, const Host& host) {
   SamplerResult result;
   result.sampler = info.name;
@@ -69,7 +69,7 @@ SamplerResult measure_sampler(const SamplerInfo& info, const AnySampler<Spectrum
 }  // namespace
 
 MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInfo* const> samplers,
-                       std::span<const Environment> lights, const StudyOptions& o, const Host& host) {
+                       std::span<const Illumination> lights, const StudyOptions& o, const Host& host) {
   MaterialResult result;
   result.material = material.name;
   const std::size_t angles = o.theta_o_deg.size();

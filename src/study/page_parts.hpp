@@ -36,7 +36,7 @@ std::string whole(const draw::Figure& figure);
 // Every material by every sampler, a row a link to its section.
 draw::Figure glance_figure(std::span<const MaterialResult> materials, const Verdict& verdict);
 std::string material_section(const MaterialResult& material, std::size_t place, std::size_t of,
-                             const Verdict& verdict, std::span<const Environment> lights,
+                             const Verdict& verdict, std::span<const Illumination> lights,
                              const StudyOptions& options);
 
 }  // namespace reflectree::study

@@ -84,7 +84,7 @@ std::string memory_section(std::span<const MaterialResult> materials, const Verd
       for (const SamplerResult& r : m.samplers) {
         if (r.sampler != s.sampler || !r.fault.empty()) continue;
         b.push_back(double(r.bytes) / 1024), t.push_back(r.build_seconds);
-        for (const Cell& c : r.cells) ns.push_back(c.sample_ns / c.floor_ns);
+        for (const StudyCell& c : r.cells) ns.push_back(c.sample_ns / c.floor_ns);
       }
     }
     const auto median = [](std::vector<double>& x) {
@@ -115,7 +115,7 @@ std::string glance_section(std::span<const MaterialResult> materials, const Verd
 }  // namespace
 
 std::string study_html(std::span<const MaterialResult> materials, const Verdict& verdict,
-                       std::span<const Environment> lights, const StudyOptions& o, const StudyMeta& meta) {
+                       std::span<const Illumination> lights, const StudyOptions& o, const StudyMeta& meta) {
   std::string body = verdict_section(materials, verdict) + glance_section(materials, verdict) +
                      memory_section(materials, verdict);
   for (std::size_t i = 0; i < materials.size(); ++i)

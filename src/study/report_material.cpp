@@ -25,7 +25,7 @@ std::string table(const MaterialResult& m, const StudyOptions& o) {
              element("td", {{"class", "word"}, {"colspan", "11"}}, escape(s.fault)) + "</tr>\n";
     }
     for (std::size_t i = 0; i < s.cells.size(); ++i) {
-      const Cell& c = s.cells[i];
+      const StudyCell& c = s.cells[i];
       out += "<tr>" + element("th", {}, i ? "" : escape(s.sampler)) + cell(number(o.theta_o_deg[i]) + "°") +
              cell(pretty(c.target_variance, 2)) + cell(pretty(c.sum_variance, 2)) +
              cell(pretty(c.worst_variance, 2)) + cell(pretty(c.dead * 100, 2) + " %") +
@@ -63,7 +63,7 @@ std::string words(const MaterialResult& m, const Verdict& v) {
 }  // namespace
 
 std::string material_section(const MaterialResult& m, std::size_t place, std::size_t of, const Verdict& v,
-                             std::span<const Environment> lights, const StudyOptions& o) {
+                             std::span<const Illumination> lights, const StudyOptions& o) {
   std::string out =
       "<div class=\"head\"><h2>" + escape(short_name(m.material)) + "</h2><span class=\"origin\">";
   if (of > 1) {

@@ -7,7 +7,7 @@ namespace reflectree::study {
 
 namespace {
 
-double cost(const Cell& c, std::size_t light) { return c.error[light] * c.sample_ns / c.floor_ns; }
+double cost(const StudyCell& c, std::size_t light) { return c.error[light] * c.sample_ns / c.floor_ns; }
 
 const SamplerResult* find(const MaterialResult& m, std::string_view name) {
   for (const SamplerResult& s : m.samplers) {
@@ -30,12 +30,12 @@ const SamplerResult* best(const MaterialResult& m, std::span<const SamplerInfo> 
 }
 
 Loss loss_of(const MaterialResult& m, const SamplerResult& ours, const SamplerResult& winner,
-             std::span<const Environment> lights, const StudyOptions& o) {
+             std::span<const Illumination> lights, const StudyOptions& o) {
   Loss loss{m.material, winner.sampler, efficiency(ours) / efficiency(winner), 0, "", 0, 0};
   double worst = 1e300;
   for (std::size_t i = 0; i < ours.cells.size(); ++i) {
     for (std::size_t e = 0; e < lights.size(); ++e) {
-      const Cell &a = ours.cells[i], &b = winner.cells[i];
+      const StudyCell &a = ours.cells[i], &b = winner.cells[i];
       const double ratio = cost(b, e) / cost(a, e);
       if (!(ratio < worst)) continue;
       worst = ratio;
@@ -57,7 +57,7 @@ std::string cause_of(const Loss& loss) {
 
 double efficiency(const SamplerResult& sampler) {
   double sum = 0, n = 0;
-  for (const Cell& c : sampler.cells) {
+  for (const StudyCell& c : sampler.cells) {
     for (std::size_t e = 0; e < c.error.size(); ++e) {
       const double x = cost(c, e);
       if (!(x > 0) || !isfinite(x)) return 0;
@@ -68,7 +68,7 @@ double efficiency(const SamplerResult& sampler) {
 }
 
 Verdict judge(std::span<const MaterialResult> materials, std::span<const SamplerInfo> samplers,
-              std::span<const Environment> lights, const StudyOptions& options) {
+              std::span<const Illumination> lights, const StudyOptions& options) {
   Verdict verdict;
   std::vector<double> logs(samplers.size(), 0);
   for (const SamplerInfo& info : samplers) {
@@ -86,7 +86,7 @@ Verdict judge(std::span<const MaterialResult> materials, std::span<const Sampler
       if (!s) continue;
       Score& score = verdict.scores[k];
       score.faults += !s->fault.empty();
-      for (const Cell& c : s->cells) score.biased_cells += c.biased;
+      for (const StudyCell& c : s->cells) score.biased_cells += c.biased;
       const double e = efficiency(*s);
       if (!(e > 0)) continue;
       ++score.materials;

@@ -3,7 +3,7 @@
 // outward rounding, which is the business of the real one), it encloses the values at points of the box.
 #include <gtest/gtest.h>
 
-#include "all_models.hpp"
+#include "random_models.hpp"
 
 namespace reflectree {
 namespace {
@@ -50,9 +50,7 @@ ShadingGeometry<Interval> around(const ShadingGeometry<double>& g, double radius
 
 template <class M>
 class IntervalInstantiation : public testing::Test {};
-using Models = testing::Types<Lambert, OrenNayar, Phong, Lafortune, Ward, AshikhminShirley, CookTorrance, Ggx,
-                              Plastic, RetroReflector, LowSmooth>;
-TYPED_TEST_SUITE(IntervalInstantiation, Models);
+TYPED_TEST_SUITE(IntervalInstantiation, AllModels::as<testing::Types>);
 
 TYPED_TEST(IntervalInstantiation, EnclosesTheValuesInTheBox) {
   Pcg32 bits(1);

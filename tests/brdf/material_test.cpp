@@ -5,10 +5,10 @@
 
 #include <locale>
 
-#include "all_models.hpp"
-#include "reflectree/text/number_text.hpp"
+#include "random_models.hpp"
 #include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree {
 namespace {
@@ -79,6 +79,27 @@ TEST(Material, EveryModelIsListedWithADefaultThatPrintsAndParses) {
   }
 }
 
+// NAME_x, NAME_y of any model can be given, and are printed, together.
+TEST(Material, APairOfAnyModelIsGivenByOneName) {
+  int pairs = 0;
+  for (const ModelInfo& model : models()) {
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      std::string pair(model.parameters[i].name);
+      if (!pair.ends_with("_x")) continue;
+      ++pairs;
+      pair.back() = 'y';
+      ASSERT_LT(i + 1, model.parameters.size()) << model.name;
+      ASSERT_EQ(model.parameters[i + 1].name, pair) << model.name;
+      const std::string both = pair.substr(0, pair.size() - 2) + "=" + shortest_text(model.parameters[i].hi);
+      const std::string text = std::string(model.name) + ":" + both;
+      const Material m = parse_material(text);
+      EXPECT_EQ(m.terms[0].values[i], m.terms[0].values[i + 1]) << text;
+      EXPECT_NE(to_text(m).find(both), std::string::npos) << to_text(m);
+    }
+  }
+  EXPECT_GE(pairs, 2);
+}
+
 template <class M>
 void expect_model_survives_text(Pcg32& bits) {
   const M model = random_model<M>(bits);
@@ -94,17 +115,7 @@ void expect_model_survives_text(Pcg32& bits) {
 TEST(Material, RandomModelsSurviveText) {
   Pcg32 bits(1);
   for (int i = 0; i < 50; ++i) {
-    expect_model_survives_text<Lambert>(bits);
-    expect_model_survives_text<OrenNayar>(bits);
-    expect_model_survives_text<Phong>(bits);
-    expect_model_survives_text<Lafortune>(bits);
-    expect_model_survives_text<Ward>(bits);
-    expect_model_survives_text<AshikhminShirley>(bits);
-    expect_model_survives_text<CookTorrance>(bits);
-    expect_model_survives_text<Ggx>(bits);
-    expect_model_survives_text<Plastic>(bits);
-    expect_model_survives_text<RetroReflector>(bits);
-    expect_model_survives_text<LowSmooth>(bits);
+    for_each_model([&bits]<class M>(std::type_identity<M>) { expect_model_survives_text<M>(bits); });
   }
 }
 
@@ -150,6 +161,8 @@ TEST(Material, ErrorsSayWhatWhereAndHow) {
       {"ggx:f0=1/1", "column 11: expected '/', found end; give one number, or three"},
       {"ggx:alpha=1/1/1", "alpha takes one number"},
       {"ggx:alpha=1,alpha=1", "column 13: parameter 'alpha' is given twice"},
+      {"ward:alpha=2", "column 12: alpha is out of range; alpha must lie between 0.001 and 1"},
+      {"ward:alpha=1/1/1", "alpha takes one number"},
       {"ward:alpha=1,alpha_y=1", "column 14: parameter 'alpha_y' is given twice"},
       {"ggx lambert", "column 5: unexpected 'lambert'; join terms with '+'"},
       {"ggx +", "column 6: expected a model or a file, found end"},

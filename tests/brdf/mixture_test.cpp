@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "all_models.hpp"
+#include "random_models.hpp"
 #include "reflectree/error.hpp"
 
 namespace reflectree {

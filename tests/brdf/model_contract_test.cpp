@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every model promises, checked for random parameters over its whole range:
-//  1 finite and >= 0, grazing included             5 mirror-symmetric about the plane of incidence, if
-//  isotropic 2 zero below the surface                        6 reciprocal 3 static = erased = batch, to the
-//  bit           7 albedo <= 1 iff declared physical 4 isotropic iff declared                        8 float
-//  agrees with double
+// What every model of the list promises, checked for random parameters over its whole range:
+//   1 finite and >= 0, grazing included
+//   2 zero below the surface
+//   3 static = erased = batch, to the bit
+//   4 isotropic iff declared
+//   5 mirror-symmetric about the plane of incidence, if isotropic
+//   6 reciprocal and its albedo <= 1, iff declared physical
+//   7 float agrees with double
 // Each check is a function of any callable, and has a twin that must be rejected.
 #include <gtest/gtest.h>
 
-#include "all_models.hpp"
+#include "random_models.hpp"
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/math/cubature.hpp"
 
@@ -92,17 +95,29 @@ M brightest(M model) {
     model.ks = Rgb{1, 1, 1} - model.kd;
   } else if constexpr (requires { model.kd; }) {
     model.kd = {1, 1, 1};
+  } else if constexpr (requires { model.rho; }) {
+    model.rho = {1, 1, 1};
   } else if constexpr (requires { model.f0; }) {
     model.f0 = {1, 1, 1};
   }
   return model;
 }
 
+// NAME_y (or cy) as NAME_x (or cx).
+template <class M>
+void make_isotropic(M& model) {
+  const auto parameters = M::describe().parameters;
+  for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
+    std::string pair(parameters[i].name);
+    if (!pair.ends_with("_x") && pair != "cx") continue;
+    pair.back() = 'y';
+    if (parameters[i + 1].name == pair) parameters[i + 1].set(model, parameters[i].get(model));
+  }
+}
+
 template <class M>
 class ModelContract : public testing::Test {};
-using Models = testing::Types<Lambert, OrenNayar, Phong, Lafortune, Ward, AshikhminShirley, CookTorrance, Ggx,
-                              Plastic, RetroReflector, LowSmooth>;
-TYPED_TEST_SUITE(ModelContract, Models);
+TYPED_TEST_SUITE(ModelContract, AllModels::as<testing::Types>);
 
 TYPED_TEST(ModelContract, IsFiniteAndNotNegative) {
   Pcg32 bits(1);
@@ -162,15 +177,7 @@ TYPED_TEST(ModelContract, IsIsotropicIffDeclared) {
   int declared_anisotropic = 0;
   for (int i = 0; i < model_count; ++i) {
     auto model = random_model<TypeParam>(bits);
-    if constexpr (requires { model.n_x; }) {
-      if (i % 2) model.n_y = model.n_x;
-    }
-    if constexpr (requires { model.alpha_x; }) {
-      if (i % 2) model.alpha_y = model.alpha_x;
-    }
-    if constexpr (requires { model.cx; }) {
-      if (i % 2) model.cy = model.cx;
-    }
+    if (i % 2) make_isotropic(model);
     const double found = anisotropy(model, bits);
     if (model.traits().isotropic) {
       EXPECT_LT(found, 1e-6) << model.traits().name;
@@ -183,30 +190,39 @@ TYPED_TEST(ModelContract, IsIsotropicIffDeclared) {
   EXPECT_TRUE(declared_anisotropic == 0 || largest > 0.1) << largest;
 }
 
-TYPED_TEST(ModelContract, IsReciprocal) {
-  Pcg32 bits(4);
+// What is not declared physical breaks a promise for some of its parameters.
+TYPED_TEST(ModelContract, IsReciprocalAndConservesEnergyIffDeclaredPhysical) {
+  const bool physical = TypeParam::describe().model_class == ModelClass::physical;
+  Pcg32 bits(4), albedo_bits(5);
+  bool broken = false;
   for (int i = 0; i < model_count; ++i) {
     const auto model = random_model<TypeParam>(bits);
-    EXPECT_LT(asymmetry_of_reciprocity(model, bits), 1e-6) << model.traits().name;
+    const double asymmetry = asymmetry_of_reciprocity(model, bits);
+    if (physical) {
+      EXPECT_LT(asymmetry, 1e-6) << model.traits().name;
+    }
+    broken = broken || asymmetry > 1e-3;
   }
+  for (int i = 0; i < (physical ? 6 : model_count) && !broken; ++i) {
+    const auto model = brightest(random_model<TypeParam>(albedo_bits));
+    const double albedo = largest_albedo(model);
+    if (physical) {
+      EXPECT_LE(albedo, 1 + 1e-4) << model.traits().name;
+    }
+    broken = !physical && albedo > 1 + 1e-3;
+  }
+  EXPECT_EQ(broken, !physical);
 }
 
-TYPED_TEST(ModelContract, ConservesEnergyIffDeclaredPhysical) {
-  const ModelClass declared = TypeParam::describe().model_class;
-  Pcg32 bits(5);
-  if (declared == ModelClass::physical) {
-    for (int i = 0; i < 6; ++i) {
-      const auto model = brightest(random_model<TypeParam>(bits));
-      EXPECT_LE(largest_albedo(model), 1 + 1e-4) << model.traits().name;
-    }
-  } else if constexpr (std::is_same_v<TypeParam, OrenNayar>) {
-    const double albedo = largest_albedo(OrenNayar{{1, 1, 1}, 0.22f});
-    EXPECT_NEAR(albedo, 1.014, 0.001);
-  } else if constexpr (std::is_same_v<TypeParam, Lafortune>) {
-    EXPECT_GT(largest_albedo(Lafortune{{1, 1, 1}, {1, 1, 1}}), 1.2);
-  } else {
-    EXPECT_GT(largest_albedo(LowSmooth{{10, 10, 10}, 1}), 1.5);
-  }
+// What those that are not physical break is the energy, by known figures, and nothing else.
+TEST(ModelContractFigures, ApproximateModelsGiveBackMoreThanTheyTake) {
+  Pcg32 bits(8);
+  EXPECT_LT(asymmetry_of_reciprocity(OrenNayar{}, bits), 1e-6);
+  EXPECT_LT(asymmetry_of_reciprocity(Lafortune{}, bits), 1e-6);
+  EXPECT_LT(asymmetry_of_reciprocity(LowSmooth{}, bits), 1e-6);
+  EXPECT_NEAR(largest_albedo(OrenNayar{{1, 1, 1}, 0.22f}), 1.014, 0.001);
+  EXPECT_GT(largest_albedo(Lafortune{{1, 1, 1}, {1, 1, 1}}), 1.2);
+  EXPECT_GT(largest_albedo(LowSmooth{{10, 10, 10}, 1}), 1.5);
 }
 
 // Tolerances: rounding of wo, wi and wh moves a lobe of width w by some 1e-7 of its argument; exponents up to

@@ -106,16 +106,16 @@ TEST(Fits, ANegativeFresnelTermDarkensAndTheValueIsCut) {
 TEST(Fits, FactsCountValuesBelowZero) {
   const TemporaryFolder folder("fits");
   std::string table = synthetic::sgd_csv();
-  EXPECT_EQ(measured_facts(synthetic::as_bytes(table), "t").clipped, (std::array<std::uint64_t, 3>{}));
+  EXPECT_EQ(measured_facts(synthetic::as_bytes(table), "t")->clipped, (std::array<std::uint64_t, 3>{}));
   table.replace(table.find("varnish,0.05,"), 13, "varnish,0,");           // no ground in red
   table.replace(table.find(",0.9,0.25,0.6,0.1,"), 18, ",0,0.25,0.6,1,");  // F = -c + (1 - c)^5
-  const MeasuredFacts facts = measured_facts(synthetic::as_bytes(table), "t");
+  const MeasuredFacts facts = *measured_facts(synthetic::as_bytes(table), "t");
   EXPECT_GT(facts.clipped[0], facts.pairs / 8);
   EXPECT_EQ(facts.clipped[1] + facts.clipped[2], 0U);
   EXPECT_EQ(facts.entries, 0U);
   // A network whose last biases are low is negative somewhere.
   const std::string network = synthetic::neural_csv();
-  const MeasuredFacts of_network = measured_facts(synthetic::as_bytes(network), "n", "one");
+  const MeasuredFacts of_network = *measured_facts(synthetic::as_bytes(network), "n", "one");
   const NeuralBrdf f = make_neural(read_parameter_table(synthetic::as_bytes(network), "n"),
                                    read_parameter_table(synthetic::as_bytes(network), "n").row("one"), "one");
   const Pairs pairs = random_pairs(4000, 0.5f, 3);

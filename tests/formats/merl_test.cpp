@@ -166,8 +166,8 @@ TEST(Merl, ValuesAndPlanesAreThoseOfTheFormat) {
   const std::size_t cell = 5 + 180 * (3 + 90 * 2);
   std::copy(minus_one.begin(), minus_one.end(), bytes.begin() + std::ptrdiff_t(12 + 8 * (1'458'000 + cell)));
   const HalfAngleTable table = read_merl(bytes, "x");
-  EXPECT_EQ(measured_facts(bytes, "x").not_measured, 1U);
-  EXPECT_EQ(measured_facts(write_merl(table), "x").not_measured, 1U) << "a copy keeps the mark";
+  EXPECT_EQ(measured_facts(bytes, "x")->not_measured, 1U);
+  EXPECT_EQ(measured_facts(write_merl(table), "x")->not_measured, 1U) << "a copy keeps the mark";
   const auto [wo, wi] = cell_centre(table, 2, 3, 5);
   EXPECT_EQ(eval(table, wo, wi).g, 0);
   EXPECT_NEAR(eval(table, wo, wi).b, 0.9f / pi, 1e-6f);
@@ -238,7 +238,7 @@ TEST(Merl, FactsTellWhatWasNotMeasured) {
   }
   const Bytes bytes = write_merl(table);
   for (const std::string member : {"nearest", "linear"}) {
-    const MeasuredFacts facts = measured_facts(bytes, "m.binary", member);
+    const MeasuredFacts facts = *measured_facts(bytes, "m.binary", member);
     EXPECT_EQ(facts.not_measured, missing);
     EXPECT_EQ(facts.entries, 3U * 1'458'000);
     EXPECT_EQ(facts.negative, 0U);

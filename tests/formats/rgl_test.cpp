@@ -9,10 +9,10 @@
 
 #include "measured_data.hpp"
 #include "reflectree/brdf/any_brdf.hpp"
-#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/measured_facts.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "synthetic.hpp"
 
 namespace reflectree {
@@ -164,7 +164,7 @@ TEST(Rgl, ANegativeDistributionOfNormalsIsCutWhereItIsRead) {
 TEST(Rgl, FactsCountEntriesAndValues) {
   synthetic::RglRecipe recipe;
   recipe.rgb = [](int t, int c, float x, float) { return c == 1 && (t > 1 || x == 0) ? -1.f : 1.f; };
-  const MeasuredFacts facts = measured_facts(synthetic::rgl_file(recipe), "m.bsdf");
+  const MeasuredFacts facts = *measured_facts(synthetic::rgl_file(recipe), "m.bsdf");
   EXPECT_EQ(facts.entries, std::uint64_t(8 + 4 * 3 * 25));
   EXPECT_EQ(facts.negative, std::uint64_t(5 + 5 + 25 + 25));
   EXPECT_EQ(facts.negative_at, (std::vector<std::uint64_t>{5, 5, 25, 25}));
@@ -182,7 +182,7 @@ TEST(Rgl, FactsCountEntriesAndValues) {
   EXPECT_EQ(pairs, facts.pairs);
   EXPECT_EQ(touched, facts.clipped[1]);
   EXPECT_THROW(measured_facts(synthetic::rgl_file(recipe), "m.bsdf", "linear"), Error);
-  const MeasuredFacts clean = measured_facts(synthetic::rgl_file(), "m.bsdf");
+  const MeasuredFacts clean = *measured_facts(synthetic::rgl_file(), "m.bsdf");
   EXPECT_EQ(clean.negative, 0U);
   EXPECT_EQ(clean.clipped, (std::array<std::uint64_t, 3>{}));
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "targets.hpp"
 
-#include "../formats/synthetic.hpp"
+#include "../formats/examples.hpp"
 #include "../formats/synthetic_sampler.hpp"
 #include "expect.hpp"
 #include "reflectree/brdf/material/material.hpp"
 #include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/formats/checksum.hpp"
+#include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/merl.hpp"
 #include "reflectree/formats/parameter_table.hpp"
@@ -65,6 +66,9 @@ void run_material(ByteView bytes) {
   for (const char* member : {"", "two", "linear"}) {
     expect_error_or_success([&] { require_sound(read_brdf(bytes, "file", member)); });
   }
+  if (const MaterialFormat* format = find_format(bytes); format && format->list_members) {
+    expect_error_or_success([&] { format->list_members(bytes, "file"); });
+  }
 }
 
 // Any text; what can be parsed prints and parses back to itself, and is a sound BRDF if it is one at all.
@@ -109,29 +113,14 @@ void run_sampler(ByteView bytes) {
   });
 }
 
-std::vector<Bytes> rgl_seeds() {
-  synthetic::RglRecipe small;
-  small.width = small.height = small.colours = small.nodes = 2;
-  small.theta_o = {0.f, 1.5f};
-  return {synthetic::rgl_file(), synthetic::rgl_file(small)};
-}
-std::vector<Bytes> merl_seeds() {
+std::vector<Bytes> rgl_seeds() { return example_files("rgl"); }
+std::vector<Bytes> merl_seeds() { return example_files("merl"); }
+std::vector<Bytes> table_seeds() { return example_files("table"); }
+std::vector<Bytes> material_seeds() {  // of every format of the table
   std::vector<Bytes> seeds;
-  for (const std::uint32_t n : {180U, 360U}) {
-    Bytes seed;
-    for (const std::uint32_t v : {90U, 90U, n}) append_u32(seed, v);
-    for (const double v : {0.0, 1.0, -1.0, 1e300}) append_f64(seed, v);
-    seeds.push_back(seed);
+  for (const MaterialFormat& format : material_formats()) {
+    for (Bytes& seed : example_files(format.key)) seeds.push_back(std::move(seed));
   }
-  return seeds;
-}
-std::vector<Bytes> table_seeds() {
-  return {synthetic::as_bytes(synthetic::neural_csv()), synthetic::as_bytes(synthetic::sgd_csv()),
-          synthetic::as_bytes(synthetic::abc_csv())};
-}
-std::vector<Bytes> material_seeds() {
-  std::vector<Bytes> seeds = rgl_seeds();
-  for (auto more : {merl_seeds(), table_seeds()}) seeds.insert(seeds.end(), more.begin(), more.end());
   return seeds;
 }
 std::vector<Bytes> sampler_seeds() {

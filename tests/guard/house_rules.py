@@ -20,7 +20,8 @@ ABSOLUTE = re.compile(r"(?<![\w.$}>/~:])/(?:home|work|root|Users|mnt|media)/\w")
 
 def files(root: pathlib.Path):
     for folder, folders, names in os.walk(root):
-        folders[:] = sorted(d for d in folders if not d.startswith(("build", "reflectree-demo"))
+        at_root = pathlib.Path(folder) == root  # a room's small room may be called build
+        folders[:] = sorted(d for d in folders if not (at_root and d.startswith(("build", "reflectree-demo")))
                             and d not in (".git", ".cache", ".venv", "__pycache__", "golden", "corpus"))
         for name in sorted(names):
             yield pathlib.Path(folder) / name

@@ -12,13 +12,13 @@
 namespace reflectree {
 namespace {
 
-struct Subject {
+struct SampledMaterial {
   const char* text;
   Sampler<AnyBrdf> sampler;
 };
-const std::vector<Subject>& subjects() {
-  static const std::vector<Subject> all = [] {
-    std::vector<Subject> list;
+const std::vector<SampledMaterial>& subjects() {
+  static const std::vector<SampledMaterial> all = [] {
+    std::vector<SampledMaterial> list;
     for (const char* text : {"lambert", "ggx:alpha=0.1", "plastic:alpha=0.2", "retro_reflector:alpha=0.1"}) {
       list.push_back({text, make_sampler(material(text))});
     }
@@ -28,7 +28,7 @@ const std::vector<Subject>& subjects() {
 }
 
 TEST(Sampling, PdfWeightSupportAndIntegralAgree) {
-  for (const Subject& s : subjects()) {
+  for (const SampledMaterial& s : subjects()) {
     const TargetFunction f = target_function(s.sampler.exact.brdf());
     for (const double theta : {0., 50., 86., 89.9}) {
       const Direction wo = wo_at(theta, 1);
@@ -44,7 +44,7 @@ TEST(Sampling, PdfWeightSupportAndIntegralAgree) {
 
 // A spoilt pdf or weight does not pass the same checks.
 TEST(SamplingTwin, SpoiltDensitiesAreSeen) {
-  const Subject& s = subjects()[1];
+  const SampledMaterial& s = subjects()[1];
   const TargetFunction f = target_function(s.sampler.exact.brdf());
   const auto passes = [&](const ErasedSampler& sampler) {
     return all_passed(check_consistency(sampler, f, wo_at(50, 1)));
@@ -59,7 +59,7 @@ TEST(SamplingTwin, SpoiltDensitiesAreSeen) {
 
 TEST(Sampling, PdfOfTheDiskIsPerProjectedSolidAngle) {
   Pcg32 u(1);
-  for (const Subject& s : subjects()) {
+  for (const SampledMaterial& s : subjects()) {
     for (int i = 0; i < 200; ++i) {
       const Direction wo = wo_at(85 * to_unit_double(u()), 6 * to_unit_double(u()));
       const Direction wi = wo_at(85 * to_unit_double(u()), 6 * to_unit_double(u()));
@@ -77,7 +77,7 @@ TEST(Sampling, PdfOfTheDiskIsPerProjectedSolidAngle) {
 
 // The same mean from one trial, from both modes, and from cubature.
 TEST(Sampling, OneTrialAndBothModesHaveTheSameMean) {
-  for (const Subject& s : subjects()) {
+  for (const SampledMaterial& s : subjects()) {
     const TargetFunction f = target_function(s.sampler.exact.brdf());
     for (const double theta : {20., 80.}) {
       const Direction wo = wo_at(theta, 2);
@@ -213,7 +213,7 @@ TEST(SampleN, IsStratified) {
 
 TEST(Monotone, InvertGivesTheUniformsBack) {
   Pcg32 u(4);
-  for (const Subject& s : subjects()) {
+  for (const SampledMaterial& s : subjects()) {
     int exceptions = 0;
     const int n = 4000;
     for (int i = 0; i < n; ++i) {
@@ -232,7 +232,7 @@ TEST(Monotone, InvertGivesTheUniformsBack) {
 
 TEST(Monotone, EachCoordinateGrowsWithItsUniform) {
   Pcg32 u(5);
-  for (const Subject& s : subjects()) {
+  for (const SampledMaterial& s : subjects()) {
     const Domain domain = s.sampler.one_shot.packed().domain;
     for (int trial = 0; trial < 40; ++trial) {
       const Direction wo = wo_at(80 * to_unit_double(u()));
@@ -260,7 +260,7 @@ TEST(Monotone, EachCoordinateGrowsWithItsUniform) {
 }
 
 TEST(Monotone, LowDiscrepancyPointsBeatRandomOnes) {
-  for (const Subject& s : subjects()) {
+  for (const SampledMaterial& s : subjects()) {
     const Direction wo = wo_at(40);
     Pcg32 u(6);
     const auto variance = [&](auto&& point) {

@@ -12,7 +12,7 @@ namespace {
 SamplerResult result(const char* name, double error, double ns) {
   SamplerResult r;
   r.sampler = name;
-  Cell cell;
+  StudyCell cell;
   cell.error = {error}, cell.sample_ns = ns, cell.floor_ns = 10;
   r.cells = {cell};
   return r;
@@ -24,7 +24,7 @@ const SamplerInfo list[] = {{"exact", "", "Reflectree", true, true, nullptr},
                             {"special", "", "a paper", false, true, nullptr}};
 
 struct VerdictOf : testing::Test {
-  std::vector<Environment> lights{{"sky", {}, 1, 1, {}}};
+  std::vector<Illumination> lights{{"sky", {}, 1, 1, {}}};
   StudyOptions options;
   VerdictOf() { options.theta_o_deg = {45}; }
   Verdict of(std::vector<MaterialResult> m) const { return judge(m, list, lights, options); }

@@ -42,20 +42,21 @@ Shot shot_of(const std::vector<std::string>& f, std::size_t at) {
 
 }  // namespace
 
-std::vector<const Cell*> Results::of(std::string_view scene, std::string_view method,
-                                     std::string_view sampler) const {
-  std::vector<const Cell*> found;
-  for (const Cell& c : cells) {
+std::vector<const PictureCell*> Results::of(std::string_view scene, std::string_view method,
+                                            std::string_view sampler) const {
+  std::vector<const PictureCell*> found;
+  for (const PictureCell& c : cells) {
     if (c.scene == scene && c.method == method && c.sampler == sampler) found.push_back(&c);
   }
-  std::sort(found.begin(), found.end(), [](const Cell* a, const Cell* b) { return a->round < b->round; });
+  std::sort(found.begin(), found.end(),
+            [](const PictureCell* a, const PictureCell* b) { return a->round < b->round; });
   return found;
 }
 
 // Fields between tabulators: the key, then a cell a line.
 void keep(const std::string& path, const Results& results) {
   std::string text = results.key + "\n";
-  for (const Cell& c : results.cells) {
+  for (const PictureCell& c : results.cells) {
     text += c.scene + "\t" + c.method + "\t" + c.sampler + "\t" + std::to_string(c.round) + written(c.equal) +
             written(c.timed) + "\n";
   }

@@ -21,7 +21,7 @@ struct Shot {
   RelativeError error;
 };
 
-struct Cell {
+struct PictureCell {
   std::string scene, method, sampler;
   int round = 0;  // each has a seed of its own
   Shot equal;     // at the samples that all have
@@ -35,12 +35,12 @@ struct Absence {
 
 struct Results {
   std::string key;  // what cells must agree in to stand in one table
-  std::vector<Cell> cells;
+  std::vector<PictureCell> cells;
   std::vector<Absence> absences;
 
   // In order of rounds.
-  std::vector<const Cell*> of(std::string_view scene, std::string_view method,
-                              std::string_view sampler) const;
+  std::vector<const PictureCell*> of(std::string_view scene, std::string_view method,
+                                     std::string_view sampler) const;
 };
 
 void keep(const std::string& path, const Results& results);

@@ -99,8 +99,8 @@ double seconds_per_sample(const Scene& scene, const Method& method, const Host& 
   return least;
 }
 
-void measure(Cell& cell, const Scene& scene, const Method& method, int timed_samples, std::uint64_t seed,
-             const Reference& reference, const Host& host, Image* image) {
+void measure(PictureCell& cell, const Scene& scene, const Method& method, int timed_samples,
+             std::uint64_t seed, const Reference& reference, const Host& host, Image* image) {
   Film film;
   double seconds = 0;
   const auto shoot = [&](int samples) {

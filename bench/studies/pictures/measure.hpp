@@ -37,7 +37,7 @@ double seconds_per_sample(const render::Scene& scene, const Method& method, cons
 
 // One film that stops at the lesser of both numbers of samples, is looked at, and goes on to the other.
 // `image`: of the film at method.samples. Throws Cancelled.
-void measure(Cell& cell, const render::Scene& scene, const Method& method, int timed_samples,
+void measure(PictureCell& cell, const render::Scene& scene, const Method& method, int timed_samples,
              std::uint64_t seed, const Reference& reference, const Host& host, Image* image = nullptr);
 
 // body(0) ... body(n - 1), begun in this order on so many threads. What one throws ends the others.

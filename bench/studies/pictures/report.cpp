@@ -16,9 +16,9 @@ namespace {
 constexpr const char* few[] = {"one-shot", "exact",        "paper",       "cosine",    "proxy",
                                "textbook", "adaptive-cdf", "alias-table", "warp-chain"};
 
-std::vector<double> collected(const Cells& cells, double (*figure)(const Cell&)) {
+std::vector<double> collected(const Cells& cells, double (*figure)(const PictureCell&)) {
   std::vector<double> x;
-  for (const Cell* c : cells) x.push_back(figure(*c));
+  for (const PictureCell* c : cells) x.push_back(figure(*c));
   return x;
 }
 
@@ -36,13 +36,14 @@ Table table_of(const Results& results, const Plan& plan, const std::string& scen
   for (const SamplerInfo& info : samplers()) {
     const Cells cells = results.of(scene, method, info.name);
     if (cells.empty()) continue;
-    const auto all = collected(cells, [](const Cell& c) { return c.equal.error.all; });
-    t.rows.push_back({std::string(info.name), shown(mean_of(all)), shown(median(all)),
-                      shown(mean_of(collected(cells, [](const Cell& c) { return c.equal.error.trimmed; }))),
-                      shown(median(collected(cells, [](const Cell& c) { return c.equal.seconds; }))),
-                      std::to_string(cells.front()->timed.samples),
-                      shown(mean_of(collected(cells, [](const Cell& c) { return c.timed.error.trimmed; }))),
-                      ours.empty() ? "–" : shown(ratio_at_time(cells, ours))});
+    const auto all = collected(cells, [](const PictureCell& c) { return c.equal.error.all; });
+    t.rows.push_back(
+        {std::string(info.name), shown(mean_of(all)), shown(median(all)),
+         shown(mean_of(collected(cells, [](const PictureCell& c) { return c.equal.error.trimmed; }))),
+         shown(median(collected(cells, [](const PictureCell& c) { return c.equal.seconds; }))),
+         std::to_string(cells.front()->timed.samples),
+         shown(mean_of(collected(cells, [](const PictureCell& c) { return c.timed.error.trimmed; }))),
+         ours.empty() ? "–" : shown(ratio_at_time(cells, ours))});
   }
   return t;
 }

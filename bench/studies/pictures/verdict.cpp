@@ -15,8 +15,8 @@ namespace {
 template <class Figure>
 Estimate ratio(const Cells& rival, const Cells& ours, const Figure& figure) {
   std::vector<double> ratios;
-  for (const Cell* a : rival) {
-    for (const Cell* b : ours) {
+  for (const PictureCell* a : rival) {
+    for (const PictureCell* b : ours) {
       if (a->round == b->round) ratios.push_back(figure(*a) / figure(*b));
     }
   }
@@ -26,7 +26,7 @@ Estimate ratio(const Cells& rival, const Cells& ours, const Figure& figure) {
 template <class Of>
 std::vector<std::string> names(const Results& results, std::string_view method, const Of& of) {
   std::vector<std::string> found;
-  for (const Cell& c : results.cells) {
+  for (const PictureCell& c : results.cells) {
     if (c.method == method && std::find(found.begin(), found.end(), of(c)) == found.end())
       found.push_back(of(c));
   }
@@ -78,13 +78,13 @@ Estimate geometric_mean_of(const std::vector<double>& x) {
 
 // The samples that fit are whole: what remains is settled by error times time.
 Estimate ratio_at_time(const Cells& rival, const Cells& ours) {
-  return ratio(rival, ours, [](const Cell& c) { return c.timed.error.trimmed * c.timed.seconds; });
+  return ratio(rival, ours, [](const PictureCell& c) { return c.timed.error.trimmed * c.timed.seconds; });
 }
 Estimate ratio_at_samples(const Cells& rival, const Cells& ours) {
-  return ratio(rival, ours, [](const Cell& c) { return c.equal.error.trimmed; });
+  return ratio(rival, ours, [](const PictureCell& c) { return c.equal.error.trimmed; });
 }
 Estimate ratio_of_time(const Cells& rival, const Cells& ours) {
-  return ratio(rival, ours, [](const Cell& c) { return c.equal.seconds; });
+  return ratio(rival, ours, [](const PictureCell& c) { return c.equal.seconds; });
 }
 
 bool is_demanded(const Against& a) { return a.rival == "cosine" || a.rival == "proxy"; }
@@ -97,7 +97,7 @@ Verdict judge(const Results& results, const std::vector<std::string>& methods, c
   Verdict v;
   v.ours = ours;
   for (const std::string& method : methods) {
-    for (const std::string& scene : names(results, method, [](const Cell& c) { return c.scene; })) {
+    for (const std::string& scene : names(results, method, [](const PictureCell& c) { return c.scene; })) {
       const Cells one_shot = results.of(scene, method, ours), exact = results.of(scene, method, "exact");
       if (one_shot.empty()) continue;
       for (const SamplerInfo& info : samplers()) {

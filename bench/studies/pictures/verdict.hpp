@@ -14,7 +14,7 @@ Estimate mean_of(const std::vector<double>& x);
 // Of numbers above zero; `error` is that of the mean.
 Estimate geometric_mean_of(const std::vector<double>& x);
 // Over seeds that both have: pairs share their camera rays.
-using Cells = std::vector<const Cell*>;
+using Cells = std::vector<const PictureCell*>;
 Estimate ratio_at_time(const Cells& rival, const Cells& ours);
 Estimate ratio_at_samples(const Cells& rival, const Cells& ours);
 Estimate ratio_of_time(const Cells& rival, const Cells& ours);

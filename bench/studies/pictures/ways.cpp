@@ -28,8 +28,8 @@ constexpr Way all[] = {
 template <class Figure>
 Estimate ratio_of_means(const Cells& a, const Cells& b, const Figure& figure) {
   std::vector<double> x, y;
-  for (const Cell* c : a) x.push_back(figure(*c));
-  for (const Cell* c : b) y.push_back(figure(*c));
+  for (const PictureCell* c : a) x.push_back(figure(*c));
+  for (const PictureCell* c : b) y.push_back(figure(*c));
   const Estimate p = mean_of(x), q = mean_of(y);
   const double value = p.value / q.value;
   return {value, value * std::hypot(p.error / p.value, q.error / q.value)};
@@ -53,9 +53,10 @@ bool is_shown(const Way& way, std::string_view sampler) {
 }
 
 Gain gain_of(const Cells& plain, const Cells& way) {
-  return {ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.all; }),
-          ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.all * c.equal.seconds; }),
-          ratio_of_means(plain, way, [](const Cell& c) { return c.equal.error.trimmed; })};
+  return {
+      ratio_of_means(plain, way, [](const PictureCell& c) { return c.equal.error.all; }),
+      ratio_of_means(plain, way, [](const PictureCell& c) { return c.equal.error.all * c.equal.seconds; }),
+      ratio_of_means(plain, way, [](const PictureCell& c) { return c.equal.error.trimmed; })};
 }
 
 }  // namespace reflectree::pictures

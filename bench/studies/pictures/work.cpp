@@ -73,7 +73,7 @@ class SceneStudy {
   }
 
  private:
-  struct Subject {
+  struct PictureSubject {
     std::string name;
     std::optional<Scene> scene;
     std::string why;  // there is none
@@ -83,7 +83,7 @@ class SceneStudy {
     Method method;
     bool divided;  // N directions are
     int timed_samples;
-    Cell cell;
+    PictureCell cell;
     const Reference* reference;
   };
 
@@ -97,7 +97,7 @@ class SceneStudy {
     }
     Progress progress(std::string(setting_.name) + ", samplers", subjects_.size());
     for_each_job(place_.threads, subjects_.size(), [&](std::size_t i) {
-      Subject& s = subjects_[i];
+      PictureSubject& s = subjects_[i];
       try {
         s.scene = load(setting_, place_.scenes, s.name, place_.host);
         s.scene->width = plan_.width, s.scene->height = plan_.height;
@@ -106,13 +106,13 @@ class SceneStudy {
       }
       progress.step();
     });
-    for (const Subject& s : subjects_) {
+    for (const PictureSubject& s : subjects_) {
       if (!s.scene) results_.absences.push_back({setting_.name, "path", s.name, s.why});
     }
   }
 
   const Scene& scene_of(const std::string& sampler) const {
-    for (const Subject& s : subjects_) {
+    for (const PictureSubject& s : subjects_) {
       if (s.name == sampler && s.scene) return *s.scene;
     }
     throw Error("there is no sampler " + sampler, setting_.name, "see the messages above");
@@ -141,8 +141,8 @@ class SceneStudy {
                 difference_map(image, *reference, 2, .5));
   }
 
-  bool is_there(const Cell& cell) const {
-    for (const Cell* c : results_.of(cell.scene, cell.method, cell.sampler)) {
+  bool is_there(const PictureCell& cell) const {
+    for (const PictureCell* c : results_.of(cell.scene, cell.method, cell.sampler)) {
       if (c->round == cell.round) return true;
     }
     return false;
@@ -150,8 +150,8 @@ class SceneStudy {
 
   void measure_all(const std::string& name, const Reference& reference) {
     const Method method = method_of(name, plan_);
-    std::vector<const Subject*> wanted;
-    for (const Subject& s : subjects_) {
+    std::vector<const PictureSubject*> wanted;
+    for (const PictureSubject& s : subjects_) {
       if (s.scene && is_wanted(plan_, name, s.name)) wanted.push_back(&s);
     }
     std::vector<double> seconds(wanted.size());
@@ -169,7 +169,7 @@ class SceneStudy {
                         ? method.samples
                         : std::max(1, int(std::lround(method.samples * ours / seconds[i])));
         if (!others.empty()) timed = others.front()->timed.samples;
-        const Cell cell{setting_.name, name, wanted[i]->name, round, {}, {}};
+        const PictureCell cell{setting_.name, name, wanted[i]->name, round, {}, {}};
         if (!is_there(cell)) jobs.push_back({&*wanted[i]->scene, method, true, timed, cell, &reference});
       }
     }
@@ -193,7 +193,7 @@ class SceneStudy {
         if (!is_shown(way, sampler)) continue;
         const Method method = pictures::method_of(way, plan_.directions);
         for (int round = 0; round < plan_.rounds; ++round) {
-          const Cell cell{setting_.name, way.name, sampler, round, {}, {}};
+          const PictureCell cell{setting_.name, way.name, sampler, round, {}, {}};
           if (!is_there(cell))
             jobs.push_back({&scene_of(sampler), method, way.divided, method.samples, cell, &reference});
         }
@@ -230,7 +230,7 @@ class SceneStudy {
   const Plan& plan_;
   const Place& place_;
   const Setting& setting_;
-  std::vector<Subject> subjects_;
+  std::vector<PictureSubject> subjects_;
   std::mutex mutex_;
 };
 

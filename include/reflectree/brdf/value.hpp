@@ -22,9 +22,9 @@ struct RgbT {
 };
 using Rgb = RgbT<float>;
 
-// Parameters are stored as float; a model lifts them to its scalar T.
+// Parameters are stored as float; a model takes them in its scalar T.
 template <class T>
-constexpr RgbT<T> lift(Rgb c) {
+constexpr RgbT<T> as_rgb(Rgb c) {
   return {T(c.r), T(c.g), T(c.b)};
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One door for all files of measured or fitted materials. The kind is told by the content, never by the
-// file's name:
-//   RGL tensor_file, isotropic RGB          no members
-//   MERL .binary                            members: nearest (the default), linear
-//   CSV of NBRDF networks, SGD or ABC fits  one member a material
+// One door for all files of measured or fitted materials: the formats of format_table.hpp. The format is told
+// by the content, never by the file's name.
 #pragma once
 
 #include <string>

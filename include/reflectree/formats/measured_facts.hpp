@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,9 @@ struct MeasuredFacts {
   std::array<std::uint64_t, 5> pairs_in_band{}, touched_in_band{};
 };
 
-// The facts of a file's member, as read_brdf() would read it. Throws Error as it does.
-MeasuredFacts measured_facts(ByteView bytes, const std::string& path, const std::string& member = "");
+// The facts of a file's member, as read_brdf() would read it; nullopt where nothing is known of its format.
+// Throws Error as it does.
+std::optional<MeasuredFacts> measured_facts(ByteView bytes, const std::string& path,
+                                            const std::string& member = "");
 
 }  // namespace reflectree

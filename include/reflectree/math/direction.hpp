@@ -46,6 +46,11 @@ template <class T>
 constexpr Vec3<T> reflect(Vec3<T> w, Vec3<T> axis) {
   return (T(2) * dot(w, axis)) * axis - w;
 }
+// The same about the normal: the direction of ideal reflection.
+template <class T>
+constexpr Vec3<T> mirror_direction(Vec3<T> w) {
+  return {-w.x, -w.y, w.z};
+}
 
 // theta from the normal, phi from x towards y; radians.
 template <class T>

@@ -23,7 +23,7 @@ inline double solid_angle_per_area(PaperMap map, Direction wo, Direction wi) {
 }
 
 // nullopt: outside of the disk, or below the horizon.
-inline std::optional<Direction> lift(PaperMap map, Direction wo, double x, double y) {
+inline std::optional<Direction> direction_at(PaperMap map, Direction wo, double x, double y) {
   if (!(x * x + y * y < 1)) return std::nullopt;
   const Vec2<double> p{x, y};
   Vec3<double> w = map == PaperMap::disk ? disk_to_hemisphere_projected(p) : disk_to_hemisphere_equal_area(p);

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "reflectree/peers/registry.hpp"
-#include "reflectree/study/environment.hpp"
+#include "reflectree/study/illumination.hpp"
 #include "reflectree/study/slices.hpp"
 
 namespace reflectree::study {
@@ -24,7 +24,7 @@ struct StudyOptions {
 };
 
 // One sampler at one theta_o. "No sample" counts as weight 0.
-struct Cell {
+struct StudyCell {
   double target_variance = 0, sum_variance = 0, worst_variance = 0;  // relative, of the weight
   double dead = 0;                                                   // share of weight 0 and of none
   bool by_density = false;             // the variances are from draws of exact mode: see ReferenceDraws
@@ -52,7 +52,7 @@ struct SamplerResult {
   std::string fault;  // what building it threw; then nothing else is measured
   std::size_t bytes = 0;
   double build_seconds = 0;        // thread CPU time, one thread
-  std::vector<Cell> cells;         // a theta_o
+  std::vector<StudyCell> cells;    // a theta_o
   std::vector<ErrorCurve> curves;  // a light
   // A theta_o: its density in the plane of incidence at plane_angles(); empty without a density.
   std::vector<std::vector<double>> slices;
@@ -73,7 +73,7 @@ struct StudyMaterial {
 
 // Cubature and cells at once on the host's threads. Throws Cancelled.
 MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInfo* const> samplers,
-                       std::span<const Environment> lights, const StudyOptions& options, const Host& host);
+                       std::span<const Illumination> lights, const StudyOptions& options, const Host& host);
 
 // Of a density p that falls far below a sharp target f, the weights that make the variance are seldom drawn,
 // and it seems small. But with draws of exact mode, of density q ~ f and weights v = f / q,
@@ -87,15 +87,15 @@ struct ReferenceDraws {
   std::vector<double> products;                  // a light: the mean of v.v' C(angle(wi, wi'))
 };
 ReferenceDraws reference_draws(const AnySampler<Spectrum>& exact, Direction wo,
-                               std::span<const Environment> lights, const StudyOptions& options,
+                               std::span<const Illumination> lights, const StudyOptions& options,
                                std::uint64_t seed);
 
 // The parts, for tests. `reference`: null where there is none.
-Cell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Direction wo, double albedo,
-                  double albedo_error, std::span<const Environment> lights, const StudyOptions& options,
-                  std::uint64_t seed, const ReferenceDraws* reference = nullptr);
+StudyCell measure_cell(const AnySampler<Spectrum>& sampler, const Target& target, Direction wo, double albedo,
+                       double albedo_error, std::span<const Illumination> lights, const StudyOptions& options,
+                       std::uint64_t seed, const ReferenceDraws* reference = nullptr);
 std::vector<ErrorCurve> measure_curves(const AnySampler<Spectrum>& sampler, Direction wo, double albedo,
-                                       std::span<const Environment> lights, const StudyOptions& options,
+                                       std::span<const Illumination> lights, const StudyOptions& options,
                                        std::uint64_t seed);
 
 // Ours, whose modes share one build.

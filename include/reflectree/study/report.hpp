@@ -12,7 +12,7 @@ struct StudyMeta {
 };
 
 std::string study_html(std::span<const MaterialResult> materials, const Verdict& verdict,
-                       std::span<const Environment> lights, const StudyOptions& options,
+                       std::span<const Illumination> lights, const StudyOptions& options,
                        const StudyMeta& meta);
 
 // RMSE over samples, or over time (microseconds), both logarithmic, at the theta_o nearest to 45 degrees: a
@@ -30,7 +30,7 @@ draw::Figure bar_figure(const std::string& title, const std::string& unit, std::
                         bool largest_first = false);
 // Samplers down; across, theta_o averaged over lights, then lights averaged over theta_o, by geometric means;
 // the relative RMSE^2 times time, over the best of its column.
-draw::Figure heat_figure(const MaterialResult& material, std::span<const Environment> lights,
+draw::Figure heat_figure(const MaterialResult& material, std::span<const Illumination> lights,
                          const StudyOptions& options);
 // In the plane of incidence, a panel a theta_o.
 draw::Figure slice_figure(const MaterialResult& material, const StudyOptions& options);

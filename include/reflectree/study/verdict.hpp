@@ -38,6 +38,6 @@ struct Verdict {
 // Of cells without efficiency (no error measured, no time), 0.
 double efficiency(const SamplerResult& sampler);
 Verdict judge(std::span<const MaterialResult> materials, std::span<const SamplerInfo> samplers,
-              std::span<const Environment> lights, const StudyOptions& options);
+              std::span<const Illumination> lights, const StudyOptions& options);
 
 }  // namespace reflectree::study

@@ -3,8 +3,8 @@
 
 #include "material_words.hpp"
 #include "reflectree/brdf/material/mixture.hpp"
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree {
 namespace {
@@ -32,12 +32,8 @@ std::string value_text(Rgb value) {
 }
 
 std::string term_text(const MaterialTerm& term) {
-  std::string text = term.weight == 1 ? "" : shortest_text(term.weight) + "*";
-  if (term.model.empty()) {
-    text += path_text(term.path);
-    if (!term.member.empty()) text += "#" + (is_word(term.member) ? term.member : quoted(term.member));
-    return text;
-  }
+  const std::string text = term.weight == 1 ? "" : shortest_text(term.weight) + "*";
+  if (term.model.empty()) return text + file_text(term.path, term.member);
   std::vector<std::string_view> names;
   if (const ModelInfo* model = find_model(term.model)) {
     for (const ParameterInfo& p : model->parameters) names.push_back(p.name);
@@ -61,7 +57,7 @@ AnyBrdf make_term(const MaterialTerm& term, const FileLoader& load_file) {
   for (std::size_t i = 0; i < term.values.size(); ++i) {
     const ParameterInfo& p = model->parameters[i];
     if (!in_range(p, term.values[i]))
-      throw Error("is out of range", term.model + ":" + std::string(p.name), range_text(p));
+      throw Error("is out of range", term.model + ":" + std::string(p.name), range_text(p, p.name));
   }
   if (const char* fault = model->fault(term.values))
     throw Error("its parameters do not fit together", term.model, fault);
@@ -83,6 +79,11 @@ std::string model_text(std::string_view model, std::span<const std::string_view>
     if (pair) ++i;
   }
   return text;
+}
+
+std::string file_text(const std::string& path, const std::string& member) {
+  if (member.empty()) return path_text(path);
+  return path_text(path) + "#" + (is_word(member) ? member : quoted(member));
 }
 
 std::string to_text(const Material& material) {

@@ -5,8 +5,8 @@
 
 #include "material_words.hpp"
 #include "reflectree/brdf/material/material.hpp"
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree {
 namespace {
@@ -161,7 +161,7 @@ class Parser {
         if (given[i]) fail_at(start, "parameter " + excerpt(name) + " is given twice", "give it once");
         given[i] = true;
       }
-      const Rgb read = value(model.parameters[first]);
+      const Rgb read = value(model.parameters[first], name);
       for (std::size_t i = first; i < first + count; ++i) values[i] = read;
     } while (take(','));
   }
@@ -191,17 +191,17 @@ class Parser {
     fail_at(start, what, std::string(model.name) + " has " + names);
   }
 
-  Rgb value(const ParameterInfo& p) {
+  Rgb value(const ParameterInfo& p, std::string_view name) {  // of a pair, the name of both
     const std::size_t start = position();
     const float r = number();
     Rgb result{r, r, r};
     if (take('/')) {
-      if (p.channels == 1) fail(std::string(p.name) + " takes one number", "remove the others");
+      if (p.channels == 1) fail(std::string(name) + " takes one number", "remove the others");
       result.g = number();
       if (!take('/')) fail("expected '/', found " + found(), "give one number, or three: R/G/B");
       result.b = number();
     }
-    if (!in_range(p, result)) fail_at(start, std::string(p.name) + " is out of range", range_text(p));
+    if (!in_range(p, result)) fail_at(start, std::string(name) + " is out of range", range_text(p, name));
     return result;
   }
   float number() {
@@ -236,8 +236,8 @@ bool in_range(const ParameterInfo& parameter, Rgb value) {
   return inside(value.r) && (parameter.channels == 1 || (inside(value.g) && inside(value.b)));
 }
 
-std::string range_text(const ParameterInfo& p) {
-  return std::string(p.name) + " must lie between " + shortest_text(p.lo) + " and " + shortest_text(p.hi) +
+std::string range_text(const ParameterInfo& p, std::string_view name) {
+  return std::string(name) + " must lie between " + shortest_text(p.lo) + " and " + shortest_text(p.hi) +
          (p.unit.empty() ? "" : " " + std::string(p.unit));
 }
 

@@ -29,7 +29,7 @@ inline bool is_pair(std::string_view x, std::string_view y) {
 }
 
 bool in_range(const ParameterInfo& parameter, Rgb value);
-// "alpha must lie between 0.001 and 1"
-std::string range_text(const ParameterInfo& parameter);
+// "alpha must lie between 0.001 and 1"; `name`: of the parameter, or of its pair.
+std::string range_text(const ParameterInfo& parameter, std::string_view name);
 
 }  // namespace reflectree

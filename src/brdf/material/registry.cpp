@@ -4,30 +4,11 @@
 #include <algorithm>
 
 #include "reflectree/brdf/material/baked_tables.hpp"
+#include "reflectree/brdf/models/all.hpp"
 #include "reflectree/text/edit_distance.hpp"
-#include "reflectree/brdf/models/ashikhmin_shirley.hpp"
-#include "reflectree/brdf/models/cook_torrance.hpp"
-#include "reflectree/brdf/models/ggx.hpp"
-#include "reflectree/brdf/models/lafortune.hpp"
-#include "reflectree/brdf/models/lambert.hpp"
-#include "reflectree/brdf/models/low_smooth.hpp"
-#include "reflectree/brdf/models/oren_nayar.hpp"
-#include "reflectree/brdf/models/phong.hpp"
-#include "reflectree/brdf/models/plastic.hpp"
-#include "reflectree/brdf/models/retro_reflector.hpp"
-#include "reflectree/brdf/models/ward.hpp"
 
 namespace reflectree {
 namespace {
-
-template <class M>
-M with_values(std::span<const Rgb> values) {
-  const auto description = M::describe();
-  M model;
-  for (std::size_t i = 0; i < description.parameters.size(); ++i)
-    description.parameters[i].set(model, values[i]);
-  return model;
-}
 
 template <class M>
 ModelInfo entry() {
@@ -38,10 +19,10 @@ ModelInfo entry() {
     info.parameters.push_back({p.name, p.is_rgb() ? 3 : 1, p.lo, p.hi, p.get(M{}), p.unit, p.meaning});
   }
   info.fault = [](std::span<const Rgb> values) -> const char* {
-    if constexpr (requires(const M& m) { m.fault(); }) return with_values<M>(values).fault();
+    if constexpr (requires(const M& m) { m.fault(); }) return model_from_values<M>(values).fault();
     return nullptr;
   };
-  info.make = [](std::span<const Rgb> values) -> AnyBrdf { return with_values<M>(values); };
+  info.make = [](std::span<const Rgb> values) -> AnyBrdf { return model_from_values<M>(values); };
   return info;
 }
 
@@ -70,24 +51,12 @@ const char* name_of(ModelClass model_class) {
 }
 
 std::span<const ModelInfo> models() {
-  // clang-format off
-  static const std::vector<ModelInfo> all = {
-      entry<Lambert>(),
-      entry<OrenNayar>(),
-      entry<Phong>(),
-      entry<Lafortune>(),
-      entry<Ward>(),
-      entry<AshikhminShirley>(),
-      entry<CookTorrance>(),
-      entry<Ggx>(),
-      entry<Plastic>(),
-      entry<RetroReflector>(),
-      entry<LowSmooth>(),
-      baked_entry<0>(),
-      baked_entry<1>(),
-      baked_entry<2>(),
-  };
-  // clang-format on
+  static const std::vector<ModelInfo> all = [] {
+    std::vector<ModelInfo> list;
+    for_each_model([&list]<class M>(std::type_identity<M>) { list.push_back(entry<M>()); });
+    for (const auto make : {baked_entry<0>, baked_entry<1>, baked_entry<2>}) list.push_back(make());
+    return list;
+  }();
   return all;
 }
 

@@ -29,7 +29,7 @@ inline Rgb ground(Rgb rho, float inside, bool nonlinear) {
 }
 
 // How much of a plastic's light the interface is expected to send.
-inline float specular_share(const Plastic& p) {
+inline float specular_share(const PlasticParameters& p) {
   const Rgb d = mean(p.diffuse), s = mean(p.specular);
   const float diffuse = d.r + d.g + d.b, specular = s.r + s.g + s.b;
   return specular + diffuse > 0 ? specular / (specular + diffuse) : .5f;

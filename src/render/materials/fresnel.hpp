@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresnel's equations for unpolarised light (Born & Wolf, Principles of Optics, 1.5 and 14.2).
+// Fresnel's equations (brdf/models/fresnel.hpp) as the renderer asks for them: from either side, in colours.
 #pragma once
 
 #include "reflectree/brdf/value.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "fresnel.hpp"
+#include "reflectree/brdf/models/cook_torrance.hpp"
+#include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/math/fast_functions.hpp"
 #include "visible_slope.hpp"
 
@@ -29,22 +31,18 @@ Microfacets::Microfacets(Roughness roughness) : roughness_(roughness) {
 
 float Microfacets::d(Direction wh) const {
   if (!(wh.z > 0)) return 0;
-  const float a2 = roughness_.alpha * roughness_.alpha, c2 = wh.z * wh.z, s2 = wh.x * wh.x + wh.y * wh.y;
-  const float scaled = a2 * c2;
-  if (roughness_.kind == Roughness::Kind::beckmann) {  // exp(-tan^2 / a^2) / (pi a^2 cos^4)
-    return s2 > 80 * scaled ? 0 : exp_of_negative(-s2 / scaled) / (pi * scaled * c2);  // spares the underflow
-  }
-  return a2 / (pi * (scaled + s2) * (scaled + s2));
+  const float alpha = roughness_.alpha;
+  if (roughness_.kind == Roughness::Kind::ggx) return ggx_distribution(wh, alpha);
+  if (sin2_theta(wh) > 80 * sqr(alpha * wh.z)) return 0;  // spares the underflow
+  return beckmann_distribution(wh, alpha, exp_of_negative);
 }
 
 float Microfacets::g1(Direction w) const {
   if (!(w.z > 0)) return 0;
-  const float alpha = roughness_.alpha, across2 = w.x * w.x + w.y * w.y;
-  if (roughness_.kind == Roughness::Kind::ggx) {
-    return 2 / (1 + std::sqrt(1 + alpha * alpha * across2 / (w.z * w.z)));
-  }
+  const float alpha = roughness_.alpha;
+  if (roughness_.kind == Roughness::Kind::ggx) return ggx_masking(w, alpha);
   // 2 / (1 + erf a + exp(-a^2) / (a sqrt pi)) of a = over / under; 1 where a > 5
-  const float over = w.z, under = alpha * std::sqrt(across2), a = over / under;
+  const float over = w.z, under = alpha * std::sqrt(sin2_theta(w)), a = over / under;
   if (over > 5 * under) return 1;
   return 2 / (2 + exp_of_negative(-a * a) * (inverse_root_pi * (under / over) - scaled_erfc(over, under)));
 }

@@ -3,9 +3,9 @@
 #include <array>
 
 #include "cosine_lobe.hpp"
-#include "reading/each.hpp"
 #include "fresnel.hpp"
 #include "microfacet.hpp"
+#include "reading/each.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 
 namespace reflectree::render {
@@ -51,11 +51,11 @@ struct RoughConductor final : Each<RoughConductor> {
 constexpr std::size_t nodes = 64;
 
 struct RoughPlastic final : Each<RoughPlastic> {
-  Plastic p;
+  PlasticParameters p;
   Microfacets normals;
   std::array<float, nodes> through{};
   float inside = 0, specular_weight;
-  RoughPlastic(Plastic parameters, Roughness r)
+  RoughPlastic(PlasticParameters parameters, Roughness r)
       : p(std::move(parameters)), normals(r), specular_weight(specular_share(p)) {
     r.sample_visible = true;  // the means are over visible normals, however directions are drawn
     const Microfacets visible(r);
@@ -107,7 +107,7 @@ struct RoughPlastic final : Each<RoughPlastic> {
 ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha) {
   return std::make_shared<RoughConductor>(roughness, eta, k, std::move(specular), std::move(alpha));
 }
-ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness) {
+ScatteringPtr rough_plastic(PlasticParameters parameters, Roughness roughness) {
   return std::make_shared<RoughPlastic>(std::move(parameters), roughness);
 }
 

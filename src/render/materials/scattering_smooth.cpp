@@ -3,15 +3,13 @@
 #include <cmath>
 
 #include "cosine_lobe.hpp"
-#include "reading/each.hpp"
 #include "fresnel.hpp"
+#include "reading/each.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 
 namespace reflectree::render {
 
 namespace {
-
-constexpr Direction mirrored(Direction w) { return {-w.x, -w.y, w.z}; }
 
 struct Diffuse final : Each<Diffuse> {
   Texture reflectance;
@@ -36,16 +34,16 @@ struct Conductor final : Each<Conductor> {
   float pdf(Direction, Direction, Uv) const override { return 0; }
   std::optional<Scattered> sample(Direction wo, Uv uv, PathBits&) const override {
     if (!(wo.z > 0)) return std::nullopt;
-    return Scattered{mirrored(wo), 0, eval(specular, uv) * fresnel_conductor(wo.z, eta, k), true};
+    return Scattered{mirror_direction(wo), 0, eval(specular, uv) * fresnel_conductor(wo.z, eta, k), true};
   }
 };
 
 // Light that is not reflected enters, is scattered by a Lambertian ground, and leaves or turns back at the
 // interface, (1 - F_i) (1 - F_o) rho / (pi eta^2 (1 - rho F_inside)); Mitsuba's default drops the rho below.
 struct SmoothPlastic final : Each<SmoothPlastic> {
-  Plastic p;
+  PlasticParameters p;
   float inside, specular_weight;
-  explicit SmoothPlastic(Plastic parameters)
+  explicit SmoothPlastic(PlasticParameters parameters)
       : p(std::move(parameters)), inside(fresnel_diffuse(1 / p.eta)), specular_weight(specular_share(p)) {}
   float chance(float reflectance) const {
     const float s = reflectance * specular_weight, d = (1 - reflectance) * (1 - specular_weight);
@@ -66,7 +64,7 @@ struct SmoothPlastic final : Each<SmoothPlastic> {
     const float reflectance = fresnel(wo.z, p.eta).reflectance, specular = chance(reflectance);
     const float u1 = to_unit_float(u()), u2 = to_unit_float(u());
     if (to_unit_float(u()) < specular) {
-      return Scattered{mirrored(wo), 0, (reflectance / specular) * eval(p.specular, uv), true};
+      return Scattered{mirror_direction(wo), 0, (reflectance / specular) * eval(p.specular, uv), true};
     }
     const Direction wi = cosine_direction(u1, u2);
     const float density = (1 - specular) * cosine_pdf(wi);
@@ -94,7 +92,7 @@ struct Glass final : Each<Glass> {
     return scatter(wi, uv, fresnel(wi.z, eta), 1, u);
   }
   Scattered scatter(Direction w, Uv uv, const Dielectric& f, float squeeze, PathBits& u) const {
-    if (to_unit_float(u()) < f.reflectance) return {mirrored(w), 0, eval(reflectance, uv), true};
+    if (to_unit_float(u()) < f.reflectance) return {mirror_direction(w), 0, eval(reflectance, uv), true};
     return {{-w.x / f.eta, -w.y / f.eta, f.cos_theta_t}, 0, squeeze * eval(transmittance, uv), true};
   }
 };
@@ -105,7 +103,9 @@ ScatteringPtr diffuse(Texture reflectance) { return std::make_shared<Diffuse>(st
 ScatteringPtr conductor(Rgb eta, Rgb k, Texture specular) {
   return std::make_shared<Conductor>(eta, k, std::move(specular));
 }
-ScatteringPtr plastic(Plastic parameters) { return std::make_shared<SmoothPlastic>(std::move(parameters)); }
+ScatteringPtr plastic(PlasticParameters parameters) {
+  return std::make_shared<SmoothPlastic>(std::move(parameters));
+}
 ScatteringPtr dielectric(float eta, Texture reflectance, Texture transmittance) {
   return std::make_shared<Glass>(eta, std::move(reflectance), std::move(transmittance));
 }

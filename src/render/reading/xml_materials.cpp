@@ -91,8 +91,8 @@ std::pair<Rgb, Rgb> MaterialReader::eta_and_k(Node n) const {
   xml_.fail(n, "no metal '" + name + "'", "give eta and k, or one of " + metal_names());
 }
 
-Plastic MaterialReader::plastic_of(Node n) {
-  Plastic p;
+PlasticParameters MaterialReader::plastic_of(Node n) {
+  PlasticParameters p;
   p.eta = relative_ior(n, 1.49);
   p.diffuse = texture(n, "diffuse_reflectance", {.5f, .5f, .5f});
   p.specular = texture(n, "specular_reflectance", {1, 1, 1});

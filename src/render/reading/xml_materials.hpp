@@ -25,7 +25,7 @@ class MaterialReader {
   Texture checkerboard(Node t) const;
   std::array<float, 6> to_uv(Node t) const;
   Roughness roughness(Node n, Texture* picture);
-  Plastic plastic_of(Node n);
+  PlasticParameters plastic_of(Node n);
   float relative_ior(Node n, double inside) const;
   double ior(Node n, const char* name, double otherwise) const;
   std::pair<Rgb, Rgb> eta_and_k(Node n) const;

@@ -20,7 +20,7 @@ constexpr std::size_t pairs = 4096;
 constexpr float symmetric_enough = 1e-4f;  // mirror images are one function, up to rounding
 constexpr float isotropic_enough = 3e-4f;  // relative, of every pair, beyond what rounding explains
 
-Direction mirrored(Direction w) { return {w.x, -w.y, w.z}; }
+Direction flipped(Direction w) { return {w.x, -w.y, w.z}; }
 
 // Pairs in the plane of incidence of wo, spread by the maps of two domains so that lobes are met.
 void make_pairs(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Direction>& wi) {
@@ -350,7 +350,7 @@ Examination examine(const AnyBrdf& f, const BuildOptions& options, const std::ve
     return seen;
   }
   std::vector<Direction> other_wi = wi;
-  for (Direction& w : other_wi) w = mirrored(w);
+  for (Direction& w : other_wi) w = flipped(w);
   const Values other = values_at(f, wo, other_wi);
   refuse_bad_values(f, other, wo, other_wi);
   seen.asymmetry = difference(first, other);

@@ -19,7 +19,8 @@ enum class ModelClass { physical, approximate, experimental };
 const char* name_of(ModelClass model_class);
 
 // A parameter of model M: a member, float or Rgb, with its range (per channel, borders included).
-// The default is the member's initialiser. A pair NAME_x, NAME_y can be given together as NAME.
+// The default is the member's initialiser. A pair NAME_x, NAME_y, one after the other, can be given together
+// as NAME, and is printed so where both are equal.
 template <class M>
 struct ModelParameter {
   std::string_view name;
@@ -48,6 +49,16 @@ struct ModelDescription {
   std::string_view summary, source;
   std::vector<ModelParameter<M>> parameters;
 };
+
+// The model with a value for each of its parameters, in the order of describe().
+template <class M>
+M model_from_values(std::span<const Rgb> values) {
+  const auto description = M::describe();
+  M model;
+  for (std::size_t i = 0; i < description.parameters.size(); ++i)
+    description.parameters[i].set(model, values[i]);
+  return model;
+}
 
 // For models whose parts share the energy; a rounding above 1 is let pass.
 inline bool sum_above_one(Rgb a, Rgb b) {

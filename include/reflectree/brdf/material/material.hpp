@@ -41,6 +41,9 @@ Material parse_material(std::string_view text, const FileExists& exists = nullpt
 // The canonical text: every parameter named, shortest numbers. parse_material(to_text(m)) == m.
 std::string to_text(const Material& material);
 
+// The canonical text of a file's member ("" where there is none): PATH#MEMBER, quoted where need be.
+std::string file_text(const std::string& path, const std::string& member);
+
 // Loads the BRDF of a file's member ("" where the file is one BRDF); throws Error.
 using FileLoader = std::function<AnyBrdf(const std::string& path, const std::string& member)>;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every analytic model, by name. A model enters with one line in registry.cpp.
+// Every model, by name: the analytic ones of models/all.hpp and the baked tables.
 #pragma once
 
 #include <span>

@@ -4,11 +4,12 @@
 #include <string>
 
 #include "reflectree/brdf/brdf.hpp"
+#include "reflectree/brdf/models/fresnel.hpp"
 
 namespace reflectree {
 
 // ABC microfacet model: f = kd / pi + F S G / (pi cos_o cos_i) with S = A / (1 + B (1 - cos theta_h))^C,
-// G of Cook and Torrance 1982, F the Fresnel equation of an unpolarised dielectric.
+// G of Cook and Torrance 1982, F the Fresnel equation of an unpolarised dielectric; ior >= 1.
 // Löw, Kronander, Ynnerman, Unger 2012, "BRDF Models for Accurate and Efficient Rendering of Glossy
 // Surfaces".
 struct AbcMicrofacet {
@@ -23,25 +24,16 @@ struct AbcMicrofacet {
     const T lobe = exp(-T(c) * log(T(1) + T(b) * versine));
     const T facing = T(2) * g.cos_theta_h / g.cos_theta_d;
     const T masking = min(T(1), facing * min(g.cos_theta_o, g.cos_theta_i));
-    const T specular = fresnel(g.cos_theta_d) * lobe * masking / (pi_v<T> * g.cos_theta_o * g.cos_theta_i);
-    return T(1) / pi_v<T> * lift<T>(kd) + specular * lift<T>(a);
+    const T n2 = T(ior) * T(ior);
+    const T fresnel = fresnel_dielectric(g.cos_theta_d, refracted_root(g.cos_theta_d, n2), n2);
+    const T specular = fresnel * lobe * masking / (pi_v<T> * g.cos_theta_o * g.cos_theta_i);
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + specular * as_rgb<T>(a);
   }
   BrdfTraits traits() const {
     BrdfTraits traits;
     traits.isotropic_by_formula = true;
     traits.name = name;
     return traits;
-  }
-
- private:
-  // The mean of both polarisations: Cook and Torrance 1982, with g^2 = ior^2 + cos^2 - 1; ior >= 1.
-  template <class T>
-  T fresnel(T cosine) const {
-    const T n2 = T(ior) * T(ior);
-    const T root = sqrt(max(n2 + sqr(cosine) - T(1), T(0)));
-    const T perpendicular = (cosine - root) / (cosine + root);
-    const T parallel = (n2 * cosine - root) / (n2 * cosine + root);
-    return T(0.5f) * (sqr(perpendicular) + sqr(parallel));
   }
 };
 

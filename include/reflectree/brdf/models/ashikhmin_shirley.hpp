@@ -30,7 +30,7 @@ struct AshikhminShirley {
     const T white = T(28) / (T(23) * pi_v<T>)*schlick_complement(T(0.5) * g.cos_theta_o) *
                     schlick_complement(T(0.5) * g.cos_theta_i);
     const Rgb under = kd * (Rgb{1, 1, 1} - f0);
-    return white * lift<T>(under) + lobe * fresnel_schlick(f0, g.cos_theta_d);
+    return white * as_rgb<T>(under) + lobe * fresnel_schlick(f0, g.cos_theta_d);
   }
 
   BrdfTraits traits() const { return model_traits(*this, n_x == n_y); }

@@ -6,12 +6,17 @@
 
 namespace reflectree {
 
-// Beckmann distribution per solid angle of the half vector: exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4).
-template <class T>
-T beckmann_distribution(Vec3<T> wh, T alpha) {
+// Beckmann distribution per solid angle of the half vector: exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4), with
+// the exponential of the caller's choice.
+template <class T, class Exponential>
+T beckmann_distribution(Vec3<T> wh, T alpha, const Exponential& exponential) {
   const T hz2 = max(sqr(wh.z), T(1e-18));  // keeps hz^4 a normal float
   const T a2 = sqr(alpha);
-  return exp(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
+  return exponential(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
+}
+template <class T>
+T beckmann_distribution(Vec3<T> wh, T alpha) {
+  return beckmann_distribution(wh, alpha, [](T x) { return exp(x); });
 }
 
 // V-cavity masking-shadowing G = min(1, 2 hz co / cos_d, 2 hz ci / cos_d), over 4 co ci; Torrance and
@@ -34,7 +39,7 @@ struct CookTorrance {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T lobe = beckmann_distribution(g.wh, T(alpha)) * v_cavity_visibility(g);
-    return T(1) / pi_v<T> * lift<T>(kd) + lobe * (lift<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * (as_rgb<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

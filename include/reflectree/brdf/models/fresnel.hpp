@@ -1,10 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fresnel's equations for unpolarised light (Born & Wolf, Principles of Optics, 1.5 and 14.2), and Schlick's
+// approximation.
 #pragma once
 
 #include "reflectree/brdf/value.hpp"
 #include "reflectree/math/scalar.hpp"
 
 namespace reflectree {
+
+// n cos theta_t = sqrt(n^2 - sin^2) behind a dielectric interface, n: of the far side over the near side;
+// 0 where all light is reflected.
+template <class T>
+T refracted_root(T cosine, T n2) {
+  return sqrt(max(n2 + sqr(cosine) - T(1), T(0)));
+}
+
+// The mean of both polarisations; `root`: refracted_root(cosine, n2). 0 / 0 where cosine and root are 0.
+template <class T>
+T fresnel_dielectric(T cosine, T root, T n2) {
+  const T perpendicular = (cosine - root) / (cosine + root);
+  const T parallel = (n2 * cosine - root) / (n2 * cosine + root);
+  return T(0.5f) * (sqr(perpendicular) + sqr(parallel));
+}
+
+// Light from a vacuum on a metal of index eta + i k.
+template <class T>
+T fresnel_conductor(T cosine, T eta, T k) {
+  const T c2 = cosine * cosine, s2 = T(1) - c2, t0 = eta * eta - k * k - s2;
+  const T a2b2 = sqrt(t0 * t0 + T(4) * eta * eta * k * k);
+  const T ac = T(2) * sqrt(max((a2b2 + t0) / T(2), T(0))) * cosine;
+  const T s = (a2b2 + c2 - ac) / (a2b2 + c2 + ac);
+  const T p = s * (c2 * a2b2 + s2 * s2 - ac * s2) / (c2 * a2b2 + s2 * s2 + ac * s2);
+  return (s + p) / T(2);
+}
 
 // (1 - c)^5 of Schlick's approximation.
 template <class T>

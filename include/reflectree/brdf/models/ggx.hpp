@@ -14,6 +14,12 @@ T ggx_distribution(Vec3<T> wh, T alpha) {
   return sqr(alpha) / (pi_v<T> * s * s);
 }
 
+// Smith's masking of one direction, 2 / (1 + sqrt(1 + alpha^2 tan^2 theta)); Walter et al. 2007, eq. 34.
+template <class T>
+T ggx_masking(Vec3<T> w, T alpha) {
+  return T(2) / (T(1) + sqrt(T(1) + sqr(alpha) * sin2_theta(w) / sqr(w.z)));
+}
+
 // Height-correlated Smith masking-shadowing over 4 cos_o cos_i; Heitz 2014, eq. 99:
 // G2 / (4 co ci) = 1 / (2 (co sqrt(a2 + (1 - a2) ci^2) + ci sqrt(a2 + (1 - a2) co^2))).
 template <class T>

@@ -23,7 +23,7 @@ struct Lafortune {
     const RgbT<T> lobe = {power(g, T(cx.r), T(cy.r), T(cz.r), T(n.r)),
                           power(g, T(cx.g), T(cy.g), T(cz.g), T(n.g)),
                           power(g, T(cx.b), T(cy.b), T(cz.b), T(n.b))};
-    return T(1) / pi_v<T> * lift<T>(kd) + lobe * lift<T>(ks);
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * as_rgb<T>(ks);
   }
 
   BrdfTraits traits() const { return model_traits(*this, cx == cy); }

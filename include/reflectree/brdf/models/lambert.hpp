@@ -11,7 +11,7 @@ struct Lambert {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>&) const {
-    return T(1) / pi_v<T> * lift<T>(rho);
+    return T(1) / pi_v<T> * as_rgb<T>(rho);
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

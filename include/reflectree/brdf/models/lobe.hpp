@@ -20,10 +20,4 @@ T cos_power(T one_minus_cos, T n) {
   return exp(n * log1p(-min(one_minus_cos, T(1))));
 }
 
-// wo mirrored about the normal: the direction of ideal reflection.
-template <class T>
-Vec3<T> mirrored(Vec3<T> w) {
-  return {-w.x, -w.y, w.z};
-}
-
 }  // namespace reflectree

@@ -19,7 +19,7 @@ struct LowSmooth {
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T d2 = sqr(g.wo.x + g.wi.x) + sqr(g.wo.y + g.wi.y);
     const T lobe = exp(-T(c) * log1p(T(b) * d2));
-    return lobe * (lift<T>(a) * fresnel_schlick(f0, g.cos_theta_d));
+    return lobe * (as_rgb<T>(a) * fresnel_schlick(f0, g.cos_theta_d));
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

@@ -21,7 +21,7 @@ struct OrenNayar {
     // sin o sin i cos(dphi) = x x' + y y'; the smaller angle has the larger cosine.
     const T sines = max(g.wo.x * g.wi.x + g.wo.y * g.wi.y, T(0));
     const T sin_tan = sines / max(g.cos_theta_o, g.cos_theta_i);
-    return (a + b * sin_tan) / pi_v<T> * lift<T>(rho);
+    return (a + b * sin_tan) / pi_v<T> * as_rgb<T>(rho);
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

@@ -15,8 +15,8 @@ struct Phong {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    const T lobe = (T(n) + T(2)) / (T(2) * pi_v<T>)*cos_power(versine(g.wi, mirrored(g.wo)), T(n));
-    return T(1) / pi_v<T> * lift<T>(kd) + lobe * lift<T>(ks);
+    const T lobe = (T(n) + T(2)) / (T(2) * pi_v<T>)*cos_power(versine(g.wi, mirror_direction(g.wo)), T(n));
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * as_rgb<T>(ks);
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

@@ -22,7 +22,7 @@ struct Plastic {
     // 1 - F(c) = (1 - f0) (1 - (1 - c)^5).
     const T base =
         sqr(T(1) - f) / pi_v<T> * schlick_complement(g.cos_theta_o) * schlick_complement(g.cos_theta_i);
-    return base * lift<T>(kd) + RgbT<T>{coat, coat, coat};
+    return base * as_rgb<T>(kd) + RgbT<T>{coat, coat, coat};
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

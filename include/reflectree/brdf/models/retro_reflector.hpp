@@ -14,7 +14,7 @@ struct RetroReflector {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    return Ggx{alpha, f0}(shading_geometry(g.wo, mirrored(g.wi)));
+    return Ggx{alpha, f0}(shading_geometry(g.wo, mirror_direction(g.wi)));
   }
 
   BrdfTraits traits() const { return model_traits(*this); }

@@ -20,7 +20,7 @@ struct Ward {
     const T slope2 = (sqr(g.wh.x / T(alpha_x)) + sqr(g.wh.y / T(alpha_y))) / hz2;
     const T scale = T(1) / (T(4) * pi_v<T> * T(alpha_x) * T(alpha_y));
     const T lobe = scale * exp(-slope2) / (sqr(g.cos_theta_d) * sqr(hz2));
-    return T(1) / pi_v<T> * lift<T>(kd) + lobe * lift<T>(ks);
+    return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * as_rgb<T>(ks);
   }
 
   BrdfTraits traits() const { return model_traits(*this, alpha_x == alpha_y); }

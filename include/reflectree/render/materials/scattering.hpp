@@ -80,13 +80,13 @@ ScatteringPtr conductor(Rgb eta, Rgb k, Texture specular);
 // `alpha`: a grey picture in place of the number, if there is one.
 ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha = {});
 // `eta`: inside over outside. `nonlinear`: colour shifts of the light that goes round inside.
-struct Plastic {
+struct PlasticParameters {
   float eta = 1.49f / 1.000277f;
   Texture diffuse{{.5f, .5f, .5f}, nullptr}, specular{{1, 1, 1}, nullptr};
   bool nonlinear = false;
 };
-ScatteringPtr plastic(Plastic parameters);
-ScatteringPtr rough_plastic(Plastic parameters, Roughness roughness);
+ScatteringPtr plastic(PlasticParameters parameters);
+ScatteringPtr rough_plastic(PlasticParameters parameters, Roughness roughness);
 ScatteringPtr dielectric(float eta, Texture reflectance, Texture transmittance);
 // A function above the surface with a sampler of it, ours or any other.
 // Light's side is drawn by `adjoint`, a sampler of the swapped function; without one, by `sampler` and a

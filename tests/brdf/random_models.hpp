@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every analytic model, and what the tests of models share.
+// Models with random parameters, and random pairs of directions.
 #pragma once
 
-#include "reflectree/brdf/models/ashikhmin_shirley.hpp"
-#include "reflectree/brdf/models/cook_torrance.hpp"
-#include "reflectree/brdf/models/ggx.hpp"
-#include "reflectree/brdf/models/lafortune.hpp"
-#include "reflectree/brdf/models/lambert.hpp"
-#include "reflectree/brdf/models/low_smooth.hpp"
-#include "reflectree/brdf/models/oren_nayar.hpp"
-#include "reflectree/brdf/models/phong.hpp"
-#include "reflectree/brdf/models/plastic.hpp"
-#include "reflectree/brdf/models/retro_reflector.hpp"
-#include "reflectree/brdf/models/ward.hpp"
+#include "reflectree/brdf/models/all.hpp"
 #include "reflectree/math/random.hpp"
 
 namespace reflectree {

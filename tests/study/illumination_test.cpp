@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The average over rotations in closed form: against lights whose correlation is known, and against
 // rotations drawn one by one.
-#include "reflectree/study/environment.hpp"
+#include "reflectree/study/illumination.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,13 +23,13 @@ LatLong map_of(int width, int height, double (*radiance)(double theta, double ph
 }
 
 // L = 1 + cos theta has <L> = 1, <L^2> = 4/3 and C(g) = 1 + cos(g) / 3.
-Environment linear_light() {
-  return make_environment("linear",
-                          map_of(512, 512, [](double theta, double) { return 1 + std::cos(theta); }));
+Illumination linear_light() {
+  return make_illumination("linear",
+                           map_of(512, 512, [](double theta, double) { return 1 + std::cos(theta); }));
 }
 
-TEST(Environment, LinearLightHasItsClosedForm) {
-  const Environment e = linear_light();
+TEST(Illumination, LinearLightHasItsClosedForm) {
+  const Illumination e = linear_light();
   EXPECT_NEAR(e.mean, 1, 1e-4);
   EXPECT_NEAR(e.mean_square, 4. / 3, 1e-4);
   for (const double cos_g : {1., 0.999, 0.7, 0., -0.5, -1.}) {
@@ -38,8 +38,8 @@ TEST(Environment, LinearLightHasItsClosedForm) {
 }
 
 // A disk of radius r: C(0) = <L^2> = share of the sphere, and nothing beyond 2 r.
-TEST(Environment, TheSmallLightReachesNoFurtherThanItself) {
-  const Environment e = procedural_environments()[0];
+TEST(Illumination, TheSmallLightReachesNoFurtherThanItself) {
+  const Illumination e = procedural_illuminations()[0];
   const double r = 5 * pi_v<double> / 180, share = (1 - std::cos(r)) / 2;
   EXPECT_NEAR(e.mean, share, 2e-3 * share);
   EXPECT_NEAR(e.mean_square, share, 2e-3 * share);
@@ -50,41 +50,41 @@ TEST(Environment, TheSmallLightReachesNoFurtherThanItself) {
 }
 
 // Cosine sampling of Lambert under 1 + n.w: a^2 (4/3 - (1 + |E wi|^2 / 3)), |E wi| = 2/3: 5/27.
-TEST(Environment, LambertUnderTheLinearLight) {
+TEST(Illumination, LambertUnderTheLinearLight) {
   StudyOptions o;
   o.samples = 1U << 16U;
-  const std::vector<Environment> lights{linear_light()};
+  const std::vector<Illumination> lights{linear_light()};
   const AnySampler<Spectrum> cosine("cosine", CosineToy{brdf("lambert:rho=0.5")});
-  const Cell c = measure_cell(cosine, {}, {0, 0, 1}, 0.5 * std::sqrt(3.), 0, lights, o, 5);
+  const StudyCell c = measure_cell(cosine, {}, {0, 0, 1}, 0.5 * std::sqrt(3.), 0, lights, o, 5);
   EXPECT_NEAR(c.error[0], 5. / 27, 2e-3);
 }
 
 // The closed form against explicit rotations, sample by sample, under a wide disk and a sky. A fault of
 // 15 % (one of the two terms bent) would be seen.
-TEST(Environment, AgreesWithExplicitRotations) {
-  std::vector<Environment> lights{
-      make_environment("disk", map_of(8, 1024, [](double theta, double) { return theta < 0.6 ? 1. : 0.; })),
-      procedural_environments()[1]};
+TEST(Illumination, AgreesWithExplicitRotations) {
+  std::vector<Illumination> lights{
+      make_illumination("disk", map_of(8, 1024, [](double theta, double) { return theta < 0.6 ? 1. : 0.; })),
+      procedural_illuminations()[1]};
   StudyOptions o;
   o.curve_samples = 4, o.curve_repeats = 48'000, o.samples = 1U << 17U, o.mean_of = 0;
   const AnySampler<Spectrum> cosine("cosine", CosineToy{brdf("phong:kd=0.3,ks=0.5,n=20")});
   const Direction wo = direction_from_angles(0.7f, 0.f);
-  const Cell c = measure_cell(cosine, {}, wo, 1, 0, lights, o, 5);
+  const StudyCell c = measure_cell(cosine, {}, wo, 1, 0, lights, o, 5);
   const auto curves = measure_curves(cosine, wo, 1, lights, o, 6);
   for (std::size_t e = 0; e < lights.size(); ++e) {
     EXPECT_NEAR(curves[e].random[0] / c.error[e], 1, 0.06) << lights[e].name;
     EXPECT_NEAR(curves[e].random[1] * 4 / c.error[e], 1, 0.06) << lights[e].name;
   }
-  for (Environment& light : lights) {
+  for (Illumination& light : lights) {
     for (double& x : light.correlation) x *= 0.7;
   }
-  const Cell bent = measure_cell(cosine, {}, wo, 1, 0, lights, o, 5);
+  const StudyCell bent = measure_cell(cosine, {}, wo, 1, 0, lights, o, 5);
   EXPECT_GT(bent.error[1] / curves[1].random[0], 1.1);
 }
 
 // Lambert under the sky is smooth: Owen-Sobol' points fall faster than 1 / n.
-TEST(Environment, StratifiedPointsFallFaster) {
-  const std::vector<Environment> lights = procedural_environments();
+TEST(Illumination, StratifiedPointsFallFaster) {
+  const std::vector<Illumination> lights = procedural_illuminations();
   StudyOptions o;
   o.curve_samples = 256, o.curve_repeats = 128;
   const AnySampler<Spectrum> cosine("cosine", CosineToy{brdf("lambert:rho=0.5")});
@@ -93,11 +93,11 @@ TEST(Environment, StratifiedPointsFallFaster) {
   EXPECT_LT(std::log(sky.stratified.back() / sky.stratified[1]) / std::log(64.), -1.3);
 }
 
-TEST(Environment, RefusesBadMaps) {
-  EXPECT_THROW(make_environment("a", {}), Error);
-  EXPECT_THROW(make_environment("a", {1, 1, {-1.f}}), Error);
-  EXPECT_THROW(make_environment("a", {1, 1, {std::nanf("")}}), Error);
-  EXPECT_THROW(make_environment("a", {2, 1, {0.f, 0.f}}), Error);
+TEST(Illumination, RefusesBadMaps) {
+  EXPECT_THROW(make_illumination("a", {}), Error);
+  EXPECT_THROW(make_illumination("a", {1, 1, {-1.f}}), Error);
+  EXPECT_THROW(make_illumination("a", {1, 1, {std::nanf("")}}), Error);
+  EXPECT_THROW(make_illumination("a", {2, 1, {0.f, 0.f}}), Error);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/study/environment.hpp"
+#include "reflectree/study/illumination.hpp"
 
 #include <algorithm>
 
@@ -103,7 +103,7 @@ float LatLong::at(Direction w) const {
   return radiance[std::size_t(row) * std::size_t(width) + std::size_t(column)];
 }
 
-double Environment::correlation_at(double cos_angle) const {
+double Illumination::correlation_at(double cos_angle) const {
   const double chord = std::sqrt(max(0., 2 - 2 * cos_angle));
   if (chord < first_chord) return linear_mix(chord / first_chord, correlation[0], correlation[1]);
   const double x = std::log(chord / first_chord) / std::log(2 / first_chord) * (nodes - 2);
@@ -113,7 +113,7 @@ double Environment::correlation_at(double cos_angle) const {
                     correlation[std::size_t(i) + 1]);
 }
 
-Environment make_environment(std::string name, LatLong map) {
+Illumination make_illumination(std::string name, LatLong map) {
   const std::string how = "give an equirectangular map of radiance";
   if (map.width < 1 || map.height < 1 ||
       map.radiance.size() != std::size_t(map.width) * std::size_t(map.height)) {
@@ -122,7 +122,7 @@ Environment make_environment(std::string name, LatLong map) {
   for (const float l : map.radiance) {
     if (!(l >= 0) || !isfinite(l)) throw Error("a pixel is negative or not finite", name, how);
   }
-  Environment e;
+  Illumination e;
   e.name = std::move(name);
   e.map = std::move(map);
   const BrightDirections bright(e.map);
@@ -139,16 +139,16 @@ Environment make_environment(std::string name, LatLong map) {
   return e;
 }
 
-std::vector<Environment> procedural_environments() {
+std::vector<Illumination> procedural_illuminations() {
   constexpr double degree = pi_v<double> / 180;
   constexpr double light = 5 * degree, sun = 0.27 * degree;
   const LatLong sky = symmetric(clouded);
   const double sky_power = BrightDirections(sky).mean();
   const double sun_radiance = 4 * sky_power * 2 / (1 - std::cos(sun));
-  std::vector<Environment> all;
-  all.push_back(make_environment("light", symmetric([](double theta) { return theta < light ? 1. : 0.; })));
-  all.push_back(make_environment("sky", sky));
-  all.push_back(make_environment(
+  std::vector<Illumination> all;
+  all.push_back(make_illumination("light", symmetric([](double theta) { return theta < light ? 1. : 0.; })));
+  all.push_back(make_illumination("sky", sky));
+  all.push_back(make_illumination(
       "sun", symmetric([&](double theta) { return clouded(theta) + (theta < sun ? sun_radiance : 0.); })));
   return all;
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/formats/measured_facts.hpp"
+#include "format_facts.hpp"
 
 #include <algorithm>
 
-#include "material_kind.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/merl.hpp"
 #include "reflectree/formats/model_tables.hpp"
@@ -60,7 +59,15 @@ void probe_sign(MeasuredFacts& facts, const F& f) {
   });
 }
 
-MeasuredFacts rgl_facts(ByteView bytes, const std::string& path) {
+}  // namespace
+
+TableLookup merl_lookup(const std::string& path, const std::string& member) {
+  if (member.empty() || member == "nearest") return TableLookup::nearest;
+  if (member == "linear") return TableLookup::linear;
+  throw Error("no member '" + member + "'", path, "its look-ups are #nearest and #linear");
+}
+
+MeasuredFacts rgl_facts(ByteView bytes, const std::string& path, const std::string&) {
   const RglFields fields = read_rgl_fields(bytes, path);
   const auto is_negative = [](float v) { return v < 0; };
   MeasuredFacts facts;
@@ -77,7 +84,8 @@ MeasuredFacts rgl_facts(ByteView bytes, const std::string& path) {
   return facts;
 }
 
-MeasuredFacts merl_facts(ByteView bytes, const std::string& path, TableLookup lookup) {
+MeasuredFacts merl_facts(ByteView bytes, const std::string& path, const std::string& member) {
+  const TableLookup lookup = merl_lookup(path, member);
   const HalfAngleTable table = read_merl(bytes, path, lookup);
   MeasuredFacts facts;
   facts.kind = lookup == TableLookup::linear ? "MERL table, linear" : "MERL table, nearest";
@@ -110,21 +118,6 @@ MeasuredFacts table_facts(ByteView bytes, const std::string& path, const std::st
       break;
   }
   return facts;
-}
-
-}  // namespace
-
-MeasuredFacts measured_facts(ByteView bytes, const std::string& path, const std::string& member) {
-  switch (detail::material_kind(bytes, path)) {
-    case detail::MaterialKind::rgl:
-      detail::refuse_member(path, member);
-      return rgl_facts(bytes, path);
-    case detail::MaterialKind::merl:
-      return merl_facts(bytes, path, detail::lookup_of(path, member));
-    case detail::MaterialKind::table:
-      break;
-  }
-  return table_facts(bytes, path, member);
 }
 
 }  // namespace reflectree

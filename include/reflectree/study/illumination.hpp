@@ -25,7 +25,7 @@ struct LatLong {
   float at(Direction w) const;
 };
 
-struct Environment {
+struct Illumination {
   std::string name;
   LatLong map;
   double mean = 0, mean_square = 0;  // over the sphere
@@ -35,10 +35,10 @@ struct Environment {
 };
 
 // Throws Error for a map that is empty, negative, not finite or black.
-Environment make_environment(std::string name, LatLong map);
+Illumination make_illumination(std::string name, LatLong map);
 
 // A disk of 5 degrees in the dark; a clouded sky over grey ground, blurred at the horizon; the same sky with
 // a sun of .27 degrees that gives four fifths of the light.
-std::vector<Environment> procedural_environments();
+std::vector<Illumination> procedural_illuminations();
 
 }  // namespace reflectree::study

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// From words to a sampler, for every face alike: a material's text or the path of a sampler file becomes a
+// BRDF, and a BRDF with its sampler.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "reflectree/brdf/material/material.hpp"
+#include "reflectree/formats/bytes.hpp"
+#include "reflectree/host.hpp"
+#include "reflectree/sampler/build.hpp"
+#include "reflectree/sampler/sampler.hpp"
+
+namespace reflectree {
+
+// Where the files of a text are looked for: as named; beside the file `beside`; in the folder `data`. What is
+// found elsewhere keeps its name in texts and errors.
+struct FilePlaces {
+  std::string data;    // empty: none
+  std::string beside;  // a file, such as the sampler whose material is meant; empty: none
+  // Told of a file that was found under another path than its own.
+  std::function<void(const std::string& path, const std::string& found)> elsewhere = nullptr;
+
+  // The path itself where the file is nowhere.
+  std::string find(const std::string& path) const;
+  FilePlaces with_neighbours_of(const std::string& file) const;
+};
+
+// Whether the text names a sampler file; what else it is, parsing tells.
+bool names_sampler_file(const std::string& text, const FilePlaces& places);
+
+// Material text, or the path of a file of one material. Throws Error.
+Material parse_material(const std::string& text, const FilePlaces& places);
+// The bytes of a file that a material names. Throws Error.
+Bytes read_material_file(const std::string& path, const FilePlaces& places);
+// The BRDF of a material whose files lie there. Throws Error.
+AnyBrdf make_brdf(const Material& material, const FilePlaces& places);
+
+// The BRDF of a material's text, or that of a sampler file. Throws Error.
+AnyBrdf open_brdf(const std::string& text, const FilePlaces& places = {});
+
+// What faces work on: a BRDF with its sampler.
+struct OpenedSampler {
+  std::string text;  // as it was asked for
+  AnyBrdf f;
+  SamplerData data;
+  std::shared_ptr<const PackedSampler> packed;
+  Sampler<AnyBrdf> sampler;
+  FilePlaces places;                       // where its files are, neighbours of its sampler file included
+  std::string sampler_file;                // where it was found; empty: built
+  std::optional<std::uint64_t> file_size;  // of the sampler file
+  std::optional<double> build_seconds;     // of a sampler that was built
+};
+
+// Builds the sampler of `f`, which `text` names. Throws Error, Cancelled.
+OpenedSampler build_named_sampler(const std::string& text, AnyBrdf f, const FilePlaces& places,
+                                  const BuildOptions& options, const Host& host);
+// Loads a sampler file with its material, and checks that they belong together. Throws Error.
+OpenedSampler open_sampler_file(const std::string& text, const FilePlaces& places);
+// Either, by what the text names; a sampler file takes no options.
+OpenedSampler open_sampler(const std::string& text, const FilePlaces& places = {},
+                           const BuildOptions& options = {}, const Host& host = {});
+
+}  // namespace reflectree
