@@ -67,7 +67,7 @@ void show_threads() {
       "the "
       "machine, too: more threads than cores gain nothing.\n\n| threads | build CPU s (*) | build wall s (*) "
       "| "
-      "exact CPU ns a sample (*) | one-shot CPU ns (*) |\n|---|---|---|---|---|\n");
+      "exact CPU ns per sample (*) | one-shot CPU ns (*) |\n|---|---|---|---|---|\n");
   const AnyBrdf f = ggx(0.1f);
   const auto packed = std::make_shared<const PackedSampler>(pack(build(f)));
   const ExactSampler<AnyBrdf> exact(f, packed);
@@ -134,7 +134,7 @@ void show_materials(const std::string& folder) {
   std::printf("\n![Time of a sample against materials](scaling-materials.svg)\n");
   if (!folder.empty()) {
     const draw::Figure figure =
-        log_plot("Time of a sample against materials", "samplers asked in turn", "ns a sample",
+        log_plot("Time of a sample against materials", "samplers asked in turn", "ns per sample",
                  {{"exact", "curve", n, exact_ns}, {"one-shot", "curve-2", n, one_shot_ns}});
     write_file_atomically(folder + "/scaling-materials.svg", draw::to_svg(figure));
   }

@@ -79,7 +79,7 @@ std::vector<Promise> judge(const std::vector<Measurement>& all, const StudyOptio
   j.at_most("no sample is refused (share)", largest(j.collect([](auto& m) { return m.none; })), 0);
   j.at_most("mean trials <= 1.25 for every wo", largest(j.collect([](auto& m) { return m.worst_trials; })),
             1.25);
-  j.at_most(format("overshoot mass <= 1e-6 (upper 95 %% bound, %.0e trials a material)",
+  j.at_most(format("overshoot mass <= 1e-6 (upper 95 %% bound, %.0e trials per material)",
                    double(options.overshoot_trials)),
             largest(j.collect([](auto& m) { return m.overshoot_upper; })), 1e-6);
   std::vector<double> variance, grazing;
@@ -108,7 +108,7 @@ std::string to_markdown(const std::vector<Measurement>& all, const std::vector<P
                         const StudyOptions& options, const std::string& command) {
   std::string out = "# The main job, measured\n\nPrinted by `" + command + "`.\n\n";
   out += format(
-      "%zu materials; %.0e samples a chi-square test at %zu fixed and %d random elevations a "
+      "%zu materials; %.0e samples per chi-square test at %zu fixed and %d random elevations per "
       "material; %d tests in the family, whose significance is %.0e.\n\n",
       all.size(), double(options.samples), options.angles_deg.size(), options.random_angles, options.tests,
       options.significance);
