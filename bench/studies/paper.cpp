@@ -65,7 +65,8 @@ bool show_law(const AnyBrdf& f, const std::string& folder) {
   }
   std::printf(
       "## The law of the error\n\n    build/bin/study_paper docs/results\n\n%s, theta_o = 45 deg, under the "
-      "sky, 512 runs per point, N = 1, 4, ..., 4096.\n\n| sampler | slope | promised | |\n|---|---|---|---|\n",
+      "sky, 512 runs per point, N = 1, 4, ..., 4096.\n\n| sampler | slope | promised | "
+      "|\n|---|---|---|---|\n",
       text);
   bool all = true;
   for (const Law& l : laws) {

@@ -116,8 +116,8 @@ void add_scene(Page& page, const Results& results, const Plan& plan, const Setti
   if (!absent.empty()) page.words(absent);
   if (!setting.pictured || results.of(setting.name, "path", plan.ours).empty()) return;
   page.words("The converged picture; then " + std::to_string(plan.samples) +
-             " samples per pixel of each by path tracing, with the map of errors: red where it is too bright, "
-             "blue where too dark, full at 50 %.");
+             " samples per pixel of each by path tracing, with the map of errors: red where it is too "
+             "bright, blue where too dark, full at 50 %.");
   page.pictures({{"converged", picture_file(setting, "reference", false)}});
   for (const std::string& name : shown_samplers()) {
     if (results.of(setting.name, "path", name).empty()) continue;
@@ -130,8 +130,8 @@ Page page_of(const Results& results, const Plan& plan) {
   const auto n = [](int x) { return std::to_string(x); };
   Page page;
   page.title = "Pictures";
-  page.lead = n(plan.width) + " × " + n(plan.height) + " pixels, " + n(plan.samples) + " samples per pixel, " +
-              n(plan.rounds) +
+  page.lead = n(plan.width) + " × " + n(plan.height) + " pixels, " + n(plan.samples) +
+              " samples per pixel, " + n(plan.rounds) +
               " seeds, by every sampler at equal samples and at equal time; each method against one picture "
               "of path tracing by one-shot mode with " +
               n(plan.reference) + " samples of another seed.";
