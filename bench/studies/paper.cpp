@@ -73,7 +73,7 @@ bool show_law(const AnyBrdf& f, const std::string& folder) {
     const bool qmc = l.name.ends_with("Sobol'");
     const bool holds = qmc ? l.slope < -0.6 : std::abs(l.slope + 0.5) <= 0.02;
     all = all && holds;
-    std::printf("| %s | %.3f | %s | %s |\n", l.name.c_str(), l.slope, qmc ? "below -.6" : "-.5 ± .02",
+    std::printf("| %s | %.3f | %s | %s |\n", l.name.c_str(), l.slope, qmc ? "below -0.6" : "-0.5 ± 0.02",
                 holds ? "holds" : "fails");
   }
   std::printf("\n![RMSE against N](paper-law.svg)\n\n");

@@ -95,8 +95,8 @@ void show_threads() {
 
 void show_materials(const std::string& folder) {
   std::printf(
-      "\n## Materials\n\n    build/bin/study_scaling docs/results\n\nN samplers of GGX, alpha from .02 to "
-      ".5; each "
+      "\n## Materials\n\n    build/bin/study_scaling docs/results\n\nN samplers of GGX, alpha from 0.02 to "
+      "0.5; each "
       "sample asks another at random, as rays do.\n\n| materials | KiB | build s (*) | exact ns (*) | "
       "one-shot ns (*) "
       "|\n|---|---|---|---|---|\n");
@@ -143,9 +143,9 @@ void show_materials(const std::string& folder) {
 void show_competitors(const std::string& folder) {
   constexpr float alphas[] = {0.5f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f};
   std::printf(
-      "\n## Competitors against sharpness\n\n    build/bin/study_scaling docs/results\n\nGGX, alpha from .5 "
-      "to .01; "
-      "the fitted exponent of alpha, and in brackets the value at .01. Variance: relative, of the weight, "
+      "\n## Competitors against sharpness\n\n    build/bin/study_scaling docs/results\n\nGGX, alpha from 0.5 "
+      "to 0.01; "
+      "the fitted exponent of alpha, and in brackets the value at 0.01. Variance: relative, of the weight, "
       "the worst "
       "of 10, 45, 75, 85°.\n\n| sampler | KiB | build s (*) | × floor (*) | variance "
       "|\n|---|---|---|---|---|\n");
@@ -188,7 +188,7 @@ void show_competitors(const std::string& folder) {
   if (folder.empty()) return;
   const draw::Figure figure =
       log_plot("Variance against sharpness", "alpha of GGX",
-               "relative variance of the weight, worst elevation; the worst at .01 first", curves);
+               "relative variance of the weight, worst elevation; the worst at 0.01 first", curves);
   write_file_atomically(folder + "/scaling-competitors.svg", draw::to_svg(figure));
 }
 
