@@ -29,8 +29,8 @@ double median(std::vector<double> x) {
 
 Table table_of(const Results& results, const Plan& plan, const std::string& scene,
                const std::string& method) {
-  Table t{{"sampler", "relMSE at equal samples", "median of seeds", "without 0.1 % of the pixels", "CPU s (*)",
-           "samples in our time", "relMSE there, without 0.1 % (*)", plan.ours + " = 1 (*)"},
+  Table t{{"sampler", "relMSE at equal samples", "median of seeds", "without 0.1 % of the pixels",
+           "CPU s (*)", "samples in our time", "relMSE there, without 0.1 % (*)", plan.ours + " = 1 (*)"},
           {}};
   const Cells ours = results.of(scene, method, plan.ours);
   for (const SamplerInfo& info : samplers()) {
