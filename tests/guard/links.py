@@ -5,7 +5,7 @@
 1. Every relative link of every .md file names a file or folder, and its anchor a heading of that page.
 2. Every path that a document names in backticks exists: `src/math/cubature.cpp`, `math/sum.hpp` (which is looked
    for in include/reflectree and src, too), `scenes/{ball,room}.xml`. Names to be filled in are left alone:
-   `src/formats/NAME.cpp`.
+   `src/formats/NAME.cpp`. So does every header of ours that its code includes.
 3. Every question of docs/questions.md has a path from README in at most three steps. Each page on it really links
    to the next, and the words in backticks behind the last link stand in the file that it leads to.
 
@@ -24,6 +24,7 @@ BASES = ("", "include", "include/reflectree", "src")  # where a header may be na
 SOURCE = (".hpp", ".cpp", ".py", ".cmake", ".inc")
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(([^()\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
+INCLUDE = re.compile(r"#include [<\"](reflectree/[^>\"]+)[>\"]")
 WORD = re.compile(r"[A-Za-z_][\w.-]*(?:/[\w.{},*<>-]*)+")
 STEPS = 3
 QUESTIONS = 12  # at least
@@ -114,6 +115,10 @@ def dead_paths(root: pathlib.Path, page: pathlib.Path) -> list[str]:
                 for path in spelt_out(word):
                     if not is_there(root, page, path):
                         found.append(f"{page.relative_to(root)}:{number}: there is no {path}")
+    for number, line in enumerate(read(page).split("\n"), 1):
+        for header in INCLUDE.findall(line):
+            if not (root / "include" / header).is_file():
+                found.append(f"{page.relative_to(root)}:{number}: there is no include/{header}")
     return found
 
 

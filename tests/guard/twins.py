@@ -132,6 +132,10 @@ class DeadEnds(unittest.TestCase):
         self.plant("docs/other.md", "See `math/gone.hpp`.\n")
         self.assert_caught("there is no math/gone.hpp")
 
+    def test_dead_header_in_code(self):
+        self.plant("docs/other.md", "As in\n\n    #include \"reflectree/math/gone.hpp\"\n")
+        self.assert_caught("docs/other.md:3: there is no include/reflectree/math/gone.hpp")
+
     def test_step_that_is_not_linked(self):
         self.ask("[README](../README.md) → [map.cpp](../src/math/map.cpp)")
         self.assert_caught("README.md does not link to src/math/map.cpp")
