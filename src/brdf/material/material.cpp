@@ -81,6 +81,11 @@ std::string model_text(std::string_view model, std::span<const NamedValue> value
   return text;
 }
 
+std::string file_text(const std::string& path, const std::string& member) {
+  if (member.empty()) return path_text(path);
+  return path_text(path) + "#" + (is_word(member) ? member : quoted(member));
+}
+
 std::string to_text(const Material& material) {
   std::string text;
   for (const MaterialTerm& term : material.terms) text += (text.empty() ? "" : " + ") + term_text(term);

@@ -46,11 +46,15 @@ T ggx_visibility(const ShadingGeometry<T>& g, Widths alpha) {
   };
   return T(0.5) / (g.cos_theta_o * widened(g.wi) + g.cos_theta_i * widened(g.wo));
 }
-// D G2 / (4 cos_o cos_i).
+// D and G2 / (4 cos_o cos_i).
 template <class T>
-T ggx_lobe(const ShadingGeometry<T>& g, Widths alpha) {
-  if (!alpha.round()) return ggx_distribution(g.wh, alpha) * ggx_visibility(g, alpha);
-  return ggx_distribution(g.wh, T(alpha.x)) * ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha.x));
+struct GgxLobe {
+  T distribution, visibility;
+};
+template <class T>
+GgxLobe<T> ggx_lobe(const ShadingGeometry<T>& g, Widths alpha) {
+  if (!alpha.round()) return {ggx_distribution(g.wh, alpha), ggx_visibility(g, alpha)};
+  return {ggx_distribution(g.wh, T(alpha.x)), ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha.x))};
 }
 
 // GGX conductor: f = D F G2 / (4 cos_o cos_i), Fresnel by Schlick.
@@ -61,7 +65,8 @@ struct Ggx {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    return ggx_lobe(in_frame_of(phi, g), alpha) * fresnel_schlick(f0, g.cos_theta_d);
+    const GgxLobe<T> lobe = ggx_lobe(in_frame_of(phi, g), alpha);
+    return lobe.distribution * lobe.visibility * fresnel_schlick(f0, g.cos_theta_d);
   }
 
   BrdfTraits traits() const { return model_traits(*this, alpha.round()); }

@@ -18,7 +18,9 @@ struct Plastic {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T f = T(f0);
-    const T coat = (f + (T(1) - f) * schlick_power(g.cos_theta_d)) * ggx_lobe(in_frame_of(phi, g), alpha);
+    const GgxLobe<T> lobe = ggx_lobe(in_frame_of(phi, g), alpha);
+    const T coat =
+        (f + (T(1) - f) * schlick_power(g.cos_theta_d)) * lobe.distribution * lobe.visibility;
     // 1 - F(c) = (1 - f0) (1 - (1 - c)^5).
     const T base =
         sqr(T(1) - f) / pi_v<T> * schlick_complement(g.cos_theta_o) * schlick_complement(g.cos_theta_i);
