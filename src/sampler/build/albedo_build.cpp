@@ -65,7 +65,7 @@ class TableBuilder {
         }
       }
       std::vector<double> misses =
-          misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress, phi_o_});
+          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress, phi_o_});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
