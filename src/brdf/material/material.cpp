@@ -72,7 +72,8 @@ std::string model_text(std::string_view model, std::span<const NamedValue> value
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i].quiet && values[i].value == Rgb{}) continue;
     std::string_view name = values[i].name;
-    const bool pair = i + 1 < values.size() && is_pair(name, values[i + 1].name) && values[i].value == values[i + 1].value;
+    const bool pair =
+        i + 1 < values.size() && is_pair(name, values[i + 1].name) && values[i].value == values[i + 1].value;
     if (pair) name.remove_suffix(2);
     text += separator + std::string(name) + "=" + value_text(values[i].value);
     separator = ',';

@@ -150,13 +150,15 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
     std::vector<AlbedoTable> finer;
     const std::size_t count = 2 * rows.size() - 1;
     for (std::size_t k = 0; k < count; ++k) {
-      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2]) : row_at(span * (float(k) / float(count - 1)), false));
+      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2])
+                                 : row_at(span * (float(k) / float(count - 1)), false));
     }
     rows = std::move(finer);
   }
 
   AlbedoTable table;
-  for (const AlbedoTable& row : rows) table.relative_error = std::max(table.relative_error, row.relative_error);
+  for (const AlbedoTable& row : rows)
+    table.relative_error = std::max(table.relative_error, row.relative_error);
   thin_out(columns, values, thinned * error);
   // As many rows as lines need. Where the series has not settled, the rows themselves are what is known.
   const bool settled = missed <= 10 * error;

@@ -75,7 +75,7 @@ std::vector<KnownBox> trial_boxes(const ViewerFrame& frame) {
 std::vector<Domain> candidates(const Examination& seen) {
   if (seen.frame.isotropic()) {
     const Symmetry symmetry = seen.asymmetry <= half_square_up_to ? Symmetry::mirror : Symmetry::none;
-    return {{DomainKind::half_vector, symmetry, 0},   {DomainKind::equal_area, symmetry, 0},
+    return {{DomainKind::half_vector, symmetry, 0},    {DomainKind::equal_area, symmetry, 0},
             {DomainKind::projected_disk, symmetry, 0}, {DomainKind::back_vector, symmetry, 0},
             {DomainKind::stretched, symmetry, 1.5f},   {DomainKind::mirror_vector, symmetry, 0},
             {DomainKind::normal_vector, symmetry, 0}};
@@ -87,8 +87,9 @@ std::vector<Domain> candidates(const Examination& seen) {
     if (list.empty() || stretch < 0.9f * list.back().stretch)
       list.push_back({DomainKind::slope_star, Symmetry::none, 0, stretch});
   }
-  for (const DomainKind kind : {DomainKind::half_vector, DomainKind::equal_area, DomainKind::projected_disk,
-                                DomainKind::back_vector, DomainKind::mirror_vector, DomainKind::normal_vector}) {
+  for (const DomainKind kind :
+       {DomainKind::half_vector, DomainKind::equal_area, DomainKind::projected_disk, DomainKind::back_vector,
+        DomainKind::mirror_vector, DomainKind::normal_vector}) {
     list.push_back({kind, Symmetry::none, 0});
   }
   list.push_back({DomainKind::stretched, Symmetry::none, 1.5f});

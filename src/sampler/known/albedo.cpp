@@ -22,7 +22,8 @@ std::size_t node_before(const std::vector<float>& x, float c) {
   return i;
 }
 
-// The row that stands for one beyond an end: the mirrored one, or, of a whole period, the one that comes round.
+// The row that stands for one beyond an end: the mirrored one, or, of a whole period, the one that comes
+// round.
 std::size_t row_beyond(const AlbedoTable& table, std::ptrdiff_t k) {
   const auto last = std::ptrdiff_t(table.phi_o.size()) - 1;
   if (k < 0) k = table.even ? -k : k + last;
@@ -30,7 +31,9 @@ std::size_t row_beyond(const AlbedoTable& table, std::ptrdiff_t k) {
   return std::size_t(k);
 }
 
-bool is_outside(const std::vector<float>& x, float c) { return x.empty() || !(c >= x.front()) || c > x.back(); }
+bool is_outside(const std::vector<float>& x, float c) {
+  return x.empty() || !(c >= x.front()) || c > x.back();
+}
 
 }  // namespace
 

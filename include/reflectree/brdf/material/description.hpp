@@ -46,11 +46,11 @@ struct ModelParameter {
   }
   void set(M& model, Rgb value) const {
     if (const auto* colour = std::get_if<1>(&member)) {
-      model.**colour = value;
+      model.** colour = value;
     } else if (const auto* width = std::get_if<2>(&member)) {
       (model.*(width->widths)).*(width->along) = value.r;
     } else if (const auto* azimuth = std::get_if<3>(&member)) {
-      model.**azimuth = Azimuth(value.r);
+      model.** azimuth = Azimuth(value.r);
     } else {
       model.**std::get_if<0>(&member) = value.r;
     }

@@ -64,8 +64,10 @@ struct CookTorrance {
         {{"kd", &CookTorrance::kd, 0, 1, "", "diffuse albedo"},
          {"ks", &CookTorrance::ks, 0, 1, "", "weight of the microfacets"},
          {"f0", &CookTorrance::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
-         {"alpha_x", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::x}, 1e-3f, 1, "", "microfacet width along x (m in the paper)"},
-             {"alpha_y", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::y}, 1e-3f, 1, "", "microfacet width along y"},
+         {"alpha_x", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::x}, 1e-3f, 1, "",
+          "microfacet width along x (m in the paper)"},
+         {"alpha_y", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::y}, 1e-3f, 1, "",
+          "microfacet width along y"},
          {"phi_deg", &CookTorrance::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };

@@ -75,8 +75,10 @@ struct Ggx {
             ModelClass::physical,
             "metal of microfacets: Trowbridge-Reitz, height-correlated Smith, Schlick's Fresnel term",
             "Walter et al. 2007, Microfacet models for refraction, eq. 33; Heitz 2014, eq. 99",
-            {{"alpha_x", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::x}, 1e-3f, 1, "", "microfacet width along x"},
-             {"alpha_y", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::y}, 1e-3f, 1, "", "microfacet width along y"},
+            {{"alpha_x", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::x}, 1e-3f, 1, "",
+              "microfacet width along x"},
+             {"alpha_y", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::y}, 1e-3f, 1, "",
+              "microfacet width along y"},
              {"f0", &Ggx::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
              {"phi_deg", &Ggx::phi, -360, 360, "degrees", "azimuth of x"}}};
   }

@@ -25,8 +25,10 @@ struct RetroReflector {
             "GGX lobe about the direction of the viewer",
             "Belcour et al. 2014, BRDF measurements and analysis of retroreflective materials; Walter et al. "
             "2007",
-            {{"alpha_x", ModelParameter<RetroReflector>::Width{&RetroReflector::alpha, &Widths::x}, 1e-3f, 1, "", "microfacet width along x"},
-             {"alpha_y", ModelParameter<RetroReflector>::Width{&RetroReflector::alpha, &Widths::y}, 1e-3f, 1, "", "microfacet width along y"},
+            {{"alpha_x", ModelParameter<RetroReflector>::Width{&RetroReflector::alpha, &Widths::x}, 1e-3f, 1,
+              "", "microfacet width along x"},
+             {"alpha_y", ModelParameter<RetroReflector>::Width{&RetroReflector::alpha, &Widths::y}, 1e-3f, 1,
+              "", "microfacet width along y"},
              {"f0", &RetroReflector::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
              {"phi_deg", &RetroReflector::phi, -360, 360, "degrees", "azimuth of x"}}};
   }

@@ -31,7 +31,8 @@ ShadingGeometry<T> in_frame_of(const Azimuth& azimuth, const ShadingGeometry<T>&
   if (azimuth.degrees == 0) return g;
   const T c = T(azimuth.cosine), s = T(azimuth.sine);
   const auto turned = [&](const Vec3<T>& w) { return Vec3<T>{c * w.x + s * w.y, c * w.y - s * w.x, w.z}; };
-  return {turned(g.wo), turned(g.wi), turned(g.wh), g.cos_theta_o, g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
+  return {turned(g.wo),  turned(g.wi),  turned(g.wh), g.cos_theta_o,
+          g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
 }
 
 }  // namespace reflectree

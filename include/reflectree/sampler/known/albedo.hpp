@@ -58,7 +58,8 @@ struct PackedAlbedo {
     const std::array<float, 4> weights = cubic_weights(x - float(k));
     const AlbedoPiece* piece = pieces.data() + k * row + lookup(cos_theta_o);
     float sum = 0;
-    for (std::size_t i = 0; i < 4; ++i, piece += row) sum += weights[i] * (piece->base + piece->slope * cos_theta_o);
+    for (std::size_t i = 0; i < 4; ++i, piece += row)
+      sum += weights[i] * (piece->base + piece->slope * cos_theta_o);
     return max(sum, 0.f);
   }
   std::size_t bytes() const { return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece); }
