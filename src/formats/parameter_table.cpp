@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "reflectree/text/edit_distance.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/edit_distance.hpp"
 
 namespace reflectree {
 namespace {
