@@ -146,13 +146,13 @@ def page(rows):
     by_verify = [r for r in real if r[1]]
     unnoticed = [r[0].name for r in real if not r[1] and not r[3]]
     text = ["# Mutations", "",
-            "Faults planted one by one in the sampler's sources, and who notices. Made by", "",
+            "We plant faults one by one in the sampler's sources and see who notices. Made by", "",
             "    tools/mutate.py --write", "",
             "from the list `tools/mutations.txt`. `verify` is `verify()` at its default effort on a small material, matt "
-            "and, where that shows nothing, glossy (`tests/verify/whole.cpp`), itself a test of the suite; seconds are "
+            "and, where that shows nothing, glossy (`tests/verify/whole.cpp`), itself a test of the suite. Seconds are "
             "its own, beside other work. Where it "
             "notices, the suite notices by that test; where it does not, the other test programs were asked.", "",
-            f"{len(real)} faults, {len(rows) - len(real)} changes more that are declared equivalent. `verify` names "
+            f"{len(real)} faults, and {len(rows) - len(real)} changes that are declared equivalent. `verify` names "
             f"{len(by_verify)} of the faults, the slowest after {max([r[2] for r in by_verify] or [0]):.0f} s; noticed "
             f"by nobody: {', '.join(unnoticed) or 'none'}.", "", table(rows), ""]
     equivalent = [r[0] for r in rows if r[0].equivalent]

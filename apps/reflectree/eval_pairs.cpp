@@ -49,7 +49,7 @@ Direction direction(const std::string& name, Vec3<double> w, const std::string& 
                     const std::string& where_z) {
   const double size = length(w);
   if (!(std::abs(size - 1) <= slack)) {
-    fail(fmt::format("{} is {:.6g} long", name, size), where, "give a unit vector, right to .001");
+    fail(fmt::format("{} is {:.6g} long", name, size), where, "give a unit vector, right to 0.001");
   }
   if (std::abs(size - 1) > exact_enough) w = normalize(w);
   const Direction rounded{float(w.x), float(w.y), float(w.z)};

@@ -113,7 +113,7 @@ void add_list(CLI::App& app, Context& context, Run& run) {
   command->footer(
       "Examples:\n"
       "  reflectree list                     every model with its parameters\n"
-      "  reflectree list ggx:alpha=.1        that material, every parameter written out\n"
+      "  reflectree list ggx:alpha=0.1       that material, every parameter written out\n"
       "  reflectree list table.csv           the members of a file");
   command->callback([&context, &run, text] {
     run = [&context, text] { return text->empty() ? list_models(context) : list_one(context, *text); };

@@ -42,7 +42,7 @@ void add_globals(CLI::App& app, Context& context) {
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--threads", context.threads,
-                 "Threads, at most 1024; 0: one a core. Results do not depend on it")
+                 "Threads, at most 1024; 0: one per core. Results do not depend on it")
       ->check(CLI::Range(0, 1024).description(""))
       ->capture_default_str()
       ->type_name("N");

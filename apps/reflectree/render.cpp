@@ -46,7 +46,7 @@ void say_profile(const Context& context, const PhaseClock::Reading& r, double pa
     return;
   }
   context.print(
-      fmt::format("{:.2f} s of CPU time, {:.3f} million paths a second of one core, {} looks\n"
+      fmt::format("{:.2f} s of CPU time, {:.3f} million paths per second of one core, {} looks\n"
                   "traversal {:5.1f} %\nsample    {:5.1f} %\neval      {:5.1f} %\nrest      {:5.1f} %\n",
                   r.seconds, paths / r.seconds / 1e6, r.rings, 100 * share(Phase::traversal),
                   100 * share(Phase::sample), 100 * share(Phase::eval), 100 * share(Phase::rest)));
@@ -82,7 +82,7 @@ int run_render(const Context& context, Options& o) {
   const std::string png = std::filesystem::path(o.output).replace_extension(".png").string();
   write_exr(o.output, image);
   write_png(png, image);
-  context.say(fmt::format("saved {} and {}, {} samples a pixel{}", o.output, png, film.samples,
+  context.say(fmt::format("saved {} and {}, {} samples per pixel{}", o.output, png, film.samples,
                           whole ? "" : "; --resume goes on"));
   return whole ? exit_success : exit_interrupted;
 }
@@ -97,7 +97,7 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->capture_default_str()
       ->type_name("FILE");
   command->add_option("-D", o->defines, "What $NAME stands for in the scene")->type_name("NAME=VALUE");
-  command->add_option("--spp", o->how.samples, "Samples a pixel; 0: the scene's")
+  command->add_option("--spp", o->how.samples, "Samples per pixel; 0: the scene's")
       ->check(CLI::Range(0, 1 << 30).description(""))
       ->capture_default_str()
       ->type_name("N");
@@ -131,7 +131,7 @@ void add_render(CLI::App& app, Context& context, Run& run) {
   command->add_option("--split", o->split, "Directions at a hit: recursive, photons, direct")
       ->check(CLI::Range(1, 64).description(""))
       ->type_name("N");
-  command->add_option("--photons", o->photons, "Light paths a pass; else as many as pixels")
+  command->add_option("--photons", o->photons, "Light paths per pass; else as many as pixels")
       ->check(CLI::Range(1, 1 << 26).description(""))
       ->type_name("N");
   command->add_option("--radius", o->radius, "Photons' radius in the first pass; else four pixels")

@@ -99,7 +99,7 @@ def relative_mse(program, picture, reference):
 
 
 def measure(program, renderers, scenes, spp, repeats, data, folder):
-    """{scene: {renderer: (paths a second, relMSE times seconds)}}"""
+    """{scene: {renderer: (paths per second, relMSE times seconds)}}"""
     table = {}
     for name in scenes:
         scene, reference = data / "scenes" / f"{name}.mitsuba.xml", data / "reference" / f"{name}.exr"
@@ -161,7 +161,7 @@ def main():
     for r in lacking:
         print(f"NOT MEASURED: {r} (LLVM 16 or later, named by DRJIT_LIBLLVM_PATH if it is not found)", file=sys.stderr)
         del renderers[r]
-    print(f"{o.spp} samples a pixel, {o.threads} threads, medians of {o.repeats}; million paths a second of one core;"
+    print(f"{o.spp} samples per pixel, {o.threads} threads, medians of {o.repeats}; million paths per second of one core;"
           " in brackets ours over theirs, and our relMSE over theirs at equal time")
     with tempfile.TemporaryDirectory() as folder:
         table = measure(program, renderers, o.scenes.split(","), o.spp, o.repeats, o.data.resolve(), pathlib.Path(folder))

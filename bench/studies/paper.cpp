@@ -65,14 +65,15 @@ bool show_law(const AnyBrdf& f, const std::string& folder) {
   }
   std::printf(
       "## The law of the error\n\n    build/bin/study_paper docs/results\n\n%s, theta_o = 45 deg, under the "
-      "sky, 512 runs a point, N = 1, 4, ..., 4096.\n\n| sampler | slope | promised | |\n|---|---|---|---|\n",
+      "sky, 512 runs per point, N = 1, 4, ..., 4096.\n\n| sampler | slope | promised | "
+      "|\n|---|---|---|---|\n",
       text);
   bool all = true;
   for (const Law& l : laws) {
     const bool qmc = l.name.ends_with("Sobol'");
     const bool holds = qmc ? l.slope < -0.6 : std::abs(l.slope + 0.5) <= 0.02;
     all = all && holds;
-    std::printf("| %s | %.3f | %s | %s |\n", l.name.c_str(), l.slope, qmc ? "below -.6" : "-.5 ± .02",
+    std::printf("| %s | %.3f | %s | %s |\n", l.name.c_str(), l.slope, qmc ? "below -0.6" : "-0.5 ± 0.02",
                 holds ? "holds" : "fails");
   }
   std::printf("\n![RMSE against N](paper-law.svg)\n\n");

@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
       "Measured files are those of REFLECTREE_DATA.");
   int samples = 100'000;
   std::string only;
-  app.add_option("--samples", samples, "a cell")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--samples", samples, "per cell")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--only", only, "competitors whose name contains this");
   return study::run_program(app, argc, argv, [&] {
     const std::vector<TuningSubject> all = subjects();

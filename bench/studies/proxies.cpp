@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
   std::string fits;
   reflectree::Target target;
   bool luminance = false;
-  app.add_option("FITS.csv", fits, "a table of fits, a material a line")
+  app.add_option("FITS.csv", fits, "a table of fits, one material per line")
       ->required()
       ->check(CLI::ExistingFile);
   app.add_flag("--luminance", luminance, "aim at luminance, not at the norm of the channels");

@@ -53,8 +53,8 @@ void show_visible_normals() {
   struct Row {
     const char *name, *text, *known[4];
   };
-  for (const Row& row : {Row{".3", "ggx:alpha=0.3,f0=1", {".11", ".11", ".13", ".09"}},
-                         Row{".1", "ggx:alpha=0.1,f0=1", {".011", ".012", ".019", ".057"}}}) {
+  for (const Row& row : {Row{"0.3", "ggx:alpha=0.3,f0=1", {"0.11", "0.11", "0.13", "0.09"}},
+                         Row{"0.1", "ggx:alpha=0.1,f0=1", {"0.011", "0.012", "0.019", "0.057"}}}) {
     const Material material = parse_material(row.text);
     const auto sampler = find_sampler("textbook")->make({make_brdf(material), material, {}}, {});
     std::printf("| %s |", row.name);
@@ -79,7 +79,7 @@ void show_warp_chain(const std::string& folder) {
       "tables "
       "which the file carries, both drawn by 400 000 samples; in brackets the share that these lose. "
       "Published "
-      "and measured elsewhere on these files: .03 to .31, and up to .57 at 85° (chm_mint).\n\n| file |");
+      "and measured elsewhere on these files: 0.03 to 0.31, and up to 0.57 at 85° (chm_mint).\n\n| file |");
   for (const double deg : degs) std::printf(" %g° |", deg);
   std::printf("\n|---|---|---|---|---|---|---|\n");
   std::vector<std::string> paths;

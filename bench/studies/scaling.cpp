@@ -165,7 +165,7 @@ int run(const std::string& folder) {
   for (const Row& r : rows) std::printf("| %g | %.0f | %.0f |\n", r.x, r.exact_ns, r.one_shot_ns);
   std::printf("\n");
   save_plot(folder, "scaling-evaluation", "Time of a sample against that of f", "ns burnt beside f",
-            "ns a sample", rows, &Row::exact_ns, &Row::one_shot_ns);
+            "ns per sample", rows, &Row::exact_ns, &Row::one_shot_ns);
   show_threads();
   show_materials(folder);
   show_competitors(folder);

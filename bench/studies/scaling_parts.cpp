@@ -67,7 +67,7 @@ void show_threads() {
       "the "
       "machine, too: more threads than cores gain nothing.\n\n| threads | build CPU s (*) | build wall s (*) "
       "| "
-      "exact CPU ns a sample (*) | one-shot CPU ns (*) |\n|---|---|---|---|---|\n");
+      "exact CPU ns per sample (*) | one-shot CPU ns (*) |\n|---|---|---|---|---|\n");
   const AnyBrdf f = ggx(0.1f);
   const auto packed = std::make_shared<const PackedSampler>(pack(build(f)));
   const ExactSampler<AnyBrdf> exact(f, packed);
@@ -95,8 +95,8 @@ void show_threads() {
 
 void show_materials(const std::string& folder) {
   std::printf(
-      "\n## Materials\n\n    build/bin/study_scaling docs/results\n\nN samplers of GGX, alpha from .02 to "
-      ".5; each "
+      "\n## Materials\n\n    build/bin/study_scaling docs/results\n\nN samplers of GGX, alpha from 0.02 to "
+      "0.5; each "
       "sample asks another at random, as rays do.\n\n| materials | KiB | build s (*) | exact ns (*) | "
       "one-shot ns (*) "
       "|\n|---|---|---|---|---|\n");
@@ -134,7 +134,7 @@ void show_materials(const std::string& folder) {
   std::printf("\n![Time of a sample against materials](scaling-materials.svg)\n");
   if (!folder.empty()) {
     const draw::Figure figure =
-        log_plot("Time of a sample against materials", "samplers asked in turn", "ns a sample",
+        log_plot("Time of a sample against materials", "samplers asked in turn", "ns per sample",
                  {{"exact", "curve", n, exact_ns}, {"one-shot", "curve-2", n, one_shot_ns}});
     write_file_atomically(folder + "/scaling-materials.svg", draw::to_svg(figure));
   }
@@ -143,9 +143,9 @@ void show_materials(const std::string& folder) {
 void show_competitors(const std::string& folder) {
   constexpr float alphas[] = {0.5f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f};
   std::printf(
-      "\n## Competitors against sharpness\n\n    build/bin/study_scaling docs/results\n\nGGX, alpha from .5 "
-      "to .01; "
-      "the fitted exponent of alpha, and in brackets the value at .01. Variance: relative, of the weight, "
+      "\n## Competitors against sharpness\n\n    build/bin/study_scaling docs/results\n\nGGX, alpha from 0.5 "
+      "to 0.01; "
+      "the fitted exponent of alpha, and in brackets the value at 0.01. Variance: relative, of the weight, "
       "the worst "
       "of 10, 45, 75, 85°.\n\n| sampler | KiB | build s (*) | × floor (*) | variance "
       "|\n|---|---|---|---|---|\n");
@@ -188,7 +188,7 @@ void show_competitors(const std::string& folder) {
   if (folder.empty()) return;
   const draw::Figure figure =
       log_plot("Variance against sharpness", "alpha of GGX",
-               "relative variance of the weight, worst elevation; the worst at .01 first", curves);
+               "relative variance of the weight, worst elevation; the worst at 0.01 first", curves);
   write_file_atomically(folder + "/scaling-competitors.svg", draw::to_svg(figure));
 }
 

@@ -55,8 +55,8 @@ Figure slabs_figure(const SamplerData& data) {
   const std::string one_shot = summary("one-shot", data.one_shot.size(), leaves_of(data.one_shot));
   Figure figure{560, 336, "Slabs of theta_o and their leaves", {}, {}};
   figure.description =
-      "Bars over the viewer's elevation, one a slab, as high as the slab's tree has leaves; " + exact + "; " +
-      one_shot + ".";
+      "Bars over the viewer's elevation, one per slab, as high as the slab's tree has leaves; " + exact +
+      "; " + one_shot + ".";
   figure.body = label(16, 24, "Slabs of *θ*_o and their leaves", Anchor::start, "head");
   figure.body += panel(data.exact_partition, data.exact, 56, exact, "fill-1", "curve-thin", false);
   figure.body += panel(data.one_shot_partition, data.one_shot, 200, one_shot, "fill-2", "bar-line", true);

@@ -74,7 +74,7 @@ const PackedSlab& packed_slab(const PackedForest& forest, std::size_t slabs, std
 
 void check_borders(const char* mode, const Partition& partition, const PackedForest& forest, Worst& worst) {
   const std::vector<SlabBox> boxes = slab_boxes(partition);
-  worst.must(forest.slabs.size() == boxes.size(), std::string(mode) + ": one packed slab a slab");
+  worst.must(forest.slabs.size() == boxes.size(), std::string(mode) + ": one packed slab per slab");
   if (forest.slabs.size() != boxes.size()) return;
   for (std::size_t s = 0; s < boxes.size() && !forest.tree.empty(); ++s) {
     for (const float x : {0.001f, 0.5f, 0.999f}) {

@@ -77,7 +77,7 @@ class Interrupt(ProgramTest):
     def test_a_render_keeps_what_is_done_and_goes_on_bit_for_bit(self):
         self.write("scene.xml", scene(48, 32))
         said = self.interrupted_render("--spp", "100000000")
-        done = int(re.fullmatch(r"saved out.exr and out.png, (\d+) samples a pixel; --resume goes on", said)[1])
+        done = int(re.fullmatch(r"saved out.exr and out.png, (\d+) samples per pixel; --resume goes on", said)[1])
         self.assertGreater(done, 0)
         self.assertEqual(self.files(), ["out.exr", "out.exr.sums", "out.png", "scene.xml"])
         parts = self.picture("out")

@@ -7,6 +7,7 @@ import unittest
 
 import house_rules
 import layers
+import links
 
 TOP = "// SPDX-License-Identifier: Apache-2.0\n#pragma once\n"
 
@@ -89,6 +90,84 @@ class Planted(unittest.TestCase):
     def test_absolute_path(self):
         self.plant("src/formats/data.cpp", 'const char* folder = "/' + 'home/someone/data";\n')
         self.assert_caught(house_rules.broken_rules, "absolute path")
+
+
+class DeadEnds(unittest.TestCase):
+    """links.py over a small tree of documents."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self.folder.name)
+        self.plant("src/math/map.cpp", "int the_map;\n")
+        self.plant("README.md", "# A\n\n[Pages](docs/page.md) and [`docs`](docs).\n\n    [code](is/left/alone)\n")
+        self.plant("docs/page.md", "# A page\n\n## The *one* place\n\n`src/math/{map}.cpp`, `src/NAME.cpp`, "
+                   "[source](../src/math/map.cpp), [above](#a-page), [elsewhere](https://example.org)\n")
+        self.ask("[README](../README.md) → [page](page.md) → [map.cpp](../src/math/map.cpp) `the_map`")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def plant(self, path: str, text: str):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+    def ask(self, path: str):
+        sound = "Path: [README](../README.md) → [page](page.md#the-one-place)\n\n"
+        questions = "".join(f"## Question {i}?\n\n{sound}" for i in range(links.QUESTIONS))
+        self.plant("docs/questions.md", f"# Questions\n\n{questions}## Where?\n\nPath: {path}\n")
+
+    def assert_caught(self, words: str):
+        found = links.dead_ends(self.root)
+        self.assertEqual(len(found), 1, found)
+        self.assertIn(words, found[0])
+
+    def test_clean_tree_passes(self):
+        self.assertEqual(links.dead_ends(self.root), [])
+
+    def test_dead_link(self):
+        self.plant("docs/other.md", "[gone](gone.md)\n")
+        self.assert_caught("docs/other.md:1: the link (gone.md) leads nowhere")
+
+    def test_dead_anchor(self):
+        self.plant("docs/other.md", "[gone](page.md#another-place)\n")
+        self.assert_caught("names no heading")
+
+    def test_dead_path_in_backticks(self):
+        self.plant("docs/other.md", "See `src/math/gone.cpp`.\n")
+        self.assert_caught("there is no src/math/gone.cpp")
+
+    def test_dead_header_named_from_a_room(self):
+        self.plant("docs/other.md", "See `math/gone.hpp`.\n")
+        self.assert_caught("there is no math/gone.hpp")
+
+    def test_dead_header_in_code(self):
+        self.plant("docs/other.md", "As in\n\n    #include \"reflectree/math/gone.hpp\"\n")
+        self.assert_caught("docs/other.md:3: there is no include/reflectree/math/gone.hpp")
+
+    def test_step_that_is_not_linked(self):
+        self.ask("[README](../README.md) → [map.cpp](../src/math/map.cpp)")
+        self.assert_caught("README.md does not link to src/math/map.cpp")
+
+    def test_path_that_begins_elsewhere(self):
+        self.ask("[page](page.md) → [map.cpp](../src/math/map.cpp)")
+        self.assert_caught("does not begin at README.md")
+
+    def test_path_of_four_steps(self):
+        self.plant("docs/other.md", "[page](page.md)\n")
+        self.plant("docs/page.md", "# A page\n\n## The *one* place\n\n[source](../src/math/map.cpp), "
+                   "[other](other.md)\n")
+        self.ask("[README](../README.md) → [page](page.md) → [other](other.md) → [page](page.md) → "
+                 "[map.cpp](../src/math/map.cpp)")
+        self.assert_caught("4 steps from README")
+
+    def test_word_that_is_not_there(self):
+        self.ask("[README](../README.md) → [page](page.md) → [map.cpp](../src/math/map.cpp) `another_map`")
+        self.assert_caught("`another_map` does not stand in src/math/map.cpp")
+
+    def test_question_without_a_path(self):
+        self.plant("docs/questions.md", (self.root / "docs/questions.md").read_text() + "\n## And where else?\n")
+        self.assert_caught("no path answers 'And where else?'")
 
 
 if __name__ == "__main__":

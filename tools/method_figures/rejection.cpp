@@ -144,8 +144,8 @@ Figure restart_figure(const Example& example) {
                  rectangle(370, 276, 14, 9, "fill-strong") +
                  label(390, 285, "∝ ∫*T*: the truth, and what starting again returns", Anchor::start, "note");
   figure.description =
-      "Two bars a leaf: its share of the volume under the bounds and its share of the target. They differ by "
-      "up to " +
+      "Two bars per leaf: its share of the volume under the bounds and its share of the target. They differ "
+      "by up to " +
       number(100 * largest_error, 1) + " percentage points; retrying inside the leaf would return the first.";
   return figure;
 }

@@ -39,9 +39,9 @@ int run(int argc, char** argv) {
   app.add_option("--resume", resume, "folder that keeps each material's results");
   app.add_option("--threads", threads)->check(CLI::Range(1, 256));
   app.add_option("--samples", options.samples, "of each chi-square test");
-  app.add_option("--overshoot-trials", options.overshoot_trials, "a material");
-  app.add_option("--albedo-directions", options.albedo_directions, "random theta_o, a material");
-  app.add_option("--albedo-trials", options.albedo_trials, "a material");
+  app.add_option("--overshoot-trials", options.overshoot_trials, "per material");
+  app.add_option("--albedo-directions", options.albedo_directions, "random theta_o, per material");
+  app.add_option("--albedo-trials", options.albedo_trials, "per material");
   app.add_flag("--reduced", reduced, "a dozen models, fewer samples: a few minutes");
   app.add_flag("--untimed", untimed, "do not judge build times (other work is running)");
   app.add_flag("--rebuild", rebuild,

@@ -79,7 +79,7 @@ std::vector<Promise> judge(const std::vector<Measurement>& all, const StudyOptio
   j.at_most("no sample is refused (share)", largest(j.collect([](auto& m) { return m.none; })), 0);
   j.at_most("mean trials <= 1.25 for every wo", largest(j.collect([](auto& m) { return m.worst_trials; })),
             1.25);
-  j.at_most(format("overshoot mass <= 1e-6 (upper 95 %% bound, %.0e trials a material)",
+  j.at_most(format("overshoot mass <= 1e-6 (upper 95 %% bound, %.0e trials per material)",
                    double(options.overshoot_trials)),
             largest(j.collect([](auto& m) { return m.overshoot_upper; })), 1e-6);
   std::vector<double> variance, grazing;
@@ -88,15 +88,15 @@ std::vector<Promise> judge(const std::vector<Measurement>& all, const StudyOptio
     variance.insert(variance.end(), m.variance.begin(), m.variance.end());
     grazing.push_back(m.variance_grazing);
   }
-  j.at_most("one-shot variance, models and RGL, 0-80 deg: median <= .01", median(variance), 0.01);
-  j.at_most("the same: worst <= .02", largest(variance), 0.02);
-  j.at_most("the same at 89.9 deg: <= .03", largest(grazing), 0.03);
+  j.at_most("one-shot variance, models and RGL, 0-80 deg: median <= 0.01", median(variance), 0.01);
+  j.at_most("the same: worst <= 0.02", largest(variance), 0.02);
+  j.at_most("the same at 89.9 deg: <= 0.03", largest(grazing), 0.03);
   const auto kib = j.collect([](auto& m) { return m.kib; });
   j.at_most("memory of a sampler: median <= 128 KiB", median(kib), 128, " KiB");
   j.at_most("the same: worst <= 1.5 MiB", largest(kib), 1536, " KiB");
   if (timed) {
     const auto seconds = [](const Measurement& m) { return m.build_seconds; };
-    j.at_most("build on two cores, models: median <= .7 s", median(j.collect(seconds, "model")), 0.7, " s");
+    j.at_most("build on two cores, models: median <= 0.7 s", median(j.collect(seconds, "model")), 0.7, " s");
     j.at_most("the same: worst <= 2 s", largest(j.collect(seconds, "model")), 2, " s");
     j.at_most("build on two cores, RGL: median <= 3 s", median(j.collect(seconds, "rgl")), 3, " s");
     j.at_most("the same: worst <= 8 s", largest(j.collect(seconds, "rgl")), 8, " s");
@@ -108,7 +108,7 @@ std::string to_markdown(const std::vector<Measurement>& all, const std::vector<P
                         const StudyOptions& options, const std::string& command) {
   std::string out = "# The main job, measured\n\nPrinted by `" + command + "`.\n\n";
   out += format(
-      "%zu materials; %.0e samples a chi-square test at %zu fixed and %d random elevations a "
+      "%zu materials; %.0e samples per chi-square test at %zu fixed and %d random elevations per "
       "material; %d tests in the family, whose significance is %.0e.\n\n",
       all.size(), double(options.samples), options.angles_deg.size(), options.random_angles, options.tests,
       options.significance);

@@ -53,7 +53,7 @@ void declare(CLI::App& app, Options& o) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--seed", o.plan.seed, "What they follow from")->capture_default_str();
-  app.add_option("--reference", o.plan.reference, "Samples a pixel of the converged picture")
+  app.add_option("--reference", o.plan.reference, "Samples per pixel of the converged picture")
       ->check(CLI::Range(2, 1 << 20))
       ->capture_default_str();
   app.add_option("--threads", o.place.threads, "Cells at a time")->check(CLI::Range(1, 256));

@@ -29,8 +29,8 @@ double median(std::vector<double> x) {
 
 Table table_of(const Results& results, const Plan& plan, const std::string& scene,
                const std::string& method) {
-  Table t{{"sampler", "relMSE at equal samples", "median of seeds", "without .1 % of the pixels", "CPU s (*)",
-           "samples in our time", "relMSE there, without .1 % (*)", plan.ours + " = 1 (*)"},
+  Table t{{"sampler", "relMSE at equal samples", "median of seeds", "without 0.1 % of the pixels",
+           "CPU s (*)", "samples in our time", "relMSE there, without 0.1 % (*)", plan.ours + " = 1 (*)"},
           {}};
   const Cells ours = results.of(scene, method, plan.ours);
   for (const SamplerInfo& info : samplers()) {
@@ -117,8 +117,8 @@ void add_scene(Page& page, const Results& results, const Plan& plan, const Setti
   if (!absent.empty()) page.words(absent);
   if (!setting.pictured || results.of(setting.name, "path", plan.ours).empty()) return;
   page.words("The converged picture; then " + std::to_string(plan.samples) +
-             " samples a pixel of each by path tracing, with the map of errors: red where it is too bright, "
-             "blue where too dark, full at 50 %.");
+             " samples per pixel of each by path tracing, with the map of errors: red where it is too "
+             "bright, blue where too dark, full at 50 %.");
   page.pictures({{"converged", picture_file(setting, "reference", false)}});
   for (const std::string& name : shown_samplers()) {
     if (results.of(setting.name, "path", name).empty()) continue;
@@ -131,8 +131,8 @@ Page page_of(const Results& results, const Plan& plan) {
   const auto n = [](int x) { return std::to_string(x); };
   Page page;
   page.title = "Pictures";
-  page.lead = n(plan.width) + " × " + n(plan.height) + " pixels, " + n(plan.samples) + " samples a pixel, " +
-              n(plan.rounds) +
+  page.lead = n(plan.width) + " × " + n(plan.height) + " pixels, " + n(plan.samples) +
+              " samples per pixel, " + n(plan.rounds) +
               " seeds, by every sampler at equal samples and at equal time; each method against one picture "
               "of path tracing by one-shot mode with " +
               n(plan.reference) + " samples of another seed.";
@@ -144,11 +144,11 @@ Page page_of(const Results& results, const Plan& plan) {
   page.section("How it is measured");
   const int split = std::max(1, int(std::lround(std::sqrt(double(plan.samples)))));
   for (const std::string& text :
-       {std::string("relMSE: the mean over pixels and channels of (a − b)² / (b² + .01), less the converged "
+       {std::string("relMSE: the mean over pixels and channels of (a − b)² / (b² + 0.01), less the converged "
                     "picture's own noise, which is known from its samples. After ±, the standard error over "
                     "seeds. All samplers share seeds, so that ratios, taken seed by seed, vary less than "
                     "what they are made of."),
-        std::string("Without .1 % of the pixels: a few bright paths can fill an untrimmed mean: one that "
+        std::string("Without 0.1 % of the pixels: a few bright paths can fill an untrimmed mean: one that "
                     "finds a lamp by chance, or the sun by way of the floor. So ratios leave out of each "
                     "picture one pixel in a thousand, those whose errors are largest. It is a favour to "
                     "samplers whose weights vary most. Beside it stand the untrimmed mean and its median "

@@ -11,9 +11,9 @@ void add_ways(Page& page, const Results& results, const Plan& plan) {
       "Direct light, which admits every way; pixels that show a sampled material. Plain: independent points, "
       "the material's own directions, no lights. Each row follows " +
       std::to_string(plan.directions) +
-      " directions a pixel from the material, one or four for a camera sample; MIS adds a sample of a light "
-      "for each, resampling draws eight candidates for each. Gains over plain of the same sampler: variance "
-      "at equal samples, efficiency, 1 / (variance × CPU time), and variance without the one pixel in a "
+      " directions per pixel from the material, one or four for a camera sample; MIS adds a sample of a "
+      "light for each, resampling draws eight candidates for each. Gains over plain of the same sampler: "
+      "variance at equal samples, efficiency, 1 / (variance × CPU time), and variance without the one pixel in a "
       "thousand whose error is largest. Where a lamp is small, the few directions that hit it by chance are "
       "plain's variance: the first two are then as uncertain as their errors say, and the third is of "
       "pictures in which that lamp is missing.");

@@ -23,7 +23,7 @@ struct DiskImage {
   float at(double x, double y) const;  // of the pixel that holds a point of the disk
 };
 
-// The mean over 2x2 points a pixel of g(wi), for the directions of a row at once.
+// The mean over 2x2 points per pixel of g(wi), for the directions of a row at once.
 using DiskFunction = std::function<void(std::span<const Direction> wi, std::span<float> out)>;
 DiskImage disk_image(const DiskFunction& g, int size = 340);
 

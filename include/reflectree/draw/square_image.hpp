@@ -20,7 +20,7 @@ struct SquarePlace {
   double py(double v) const { return y + height() - width * (v - (half ? 0 : -1)) / 2; }
 };
 
-// g as an <image>, a point a pixel.
+// g as an <image>, one point per pixel.
 std::string square_raster(const std::function<double(Vec2<float>)>& g, const Axis& range,
                           const SquarePlace& place, int size = 320);
 

@@ -23,7 +23,7 @@ std::size_t choose_paper_leaf(const PaperTree& tree, const PaperOptions& options
 std::vector<PaperBucket> make_paper_buckets(const PaperTree& tree, bool by_volume);
 
 // visit(leaf, count): n divided among the children by their CDF, in one traversal. What rounding leaves over
-// is placed by one random offset a node, so that each count has the right mean. Allocates nothing.
+// is placed by one random offset per node, so that each count has the right mean. Allocates nothing.
 template <class Visit>
 void divide_paper_count(const PaperTree& tree, std::size_t n, UniformBits& u, bool by_volume,
                         const Visit& visit, std::size_t at = 0) {

@@ -4,11 +4,11 @@
 // many, and what serves a wo between two of them, is read into it, in its favour: directions are drawn from
 // the tables' own functions and weighted by their density, f(tabulated wo, wi) / I_0, and the weight
 // f_cos / pdf carries the rest. So nothing is biased by the tables' distance, wherever one of them has the
-// support of f; the variance grows with it. Ninety trees, at the middles of a degree each: MERL's own step.
+// support of f; the variance grows with it. Ninety trees, at the middle of each degree: MERL's own step.
 //
 // What stays wrong is the paper's: the density claimed is right only as far as the estimates of I and M are
-// (paper_statistics.hpp), and the registry says so: the mean weight of nine models lies within .8 % of the
-// albedo, mostly above, with 8 x 8 points a node, and within .1 % with 32 x 32 at four times the leaves.
+// (paper_statistics.hpp), and the registry says so: the mean weight of nine models lies within 0.8 % of the
+// albedo, mostly above, with 8 x 8 points per node, within 0.1 % with 32 x 32 at four times the leaves.
 #pragma once
 
 #include <memory>

@@ -28,7 +28,7 @@ enum class PaperBetween : std::uint8_t { nearest, mixed };
 struct PaperOptions {
   double n_max = 4;
   int max_depth = 12;  // where the test cannot be met: at an infinite maximum
-  int grid = 8;        // points a side of a node's estimates of I and M
+  int grid = 8;        // points per side of a node's estimates of I and M
   std::size_t max_leaves = 200'000;
   int thetas = 90;  // elevations with a tree of their own
   PaperBetween between = PaperBetween::mixed;

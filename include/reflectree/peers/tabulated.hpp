@@ -12,8 +12,8 @@ namespace reflectree {
 // The defaults are those of the registry, chosen by bench/studies/peers_tuning.
 struct TabulatedTuning {
   int slices = 32;  // elevations of wo
-  int nodes = 64;   // a side, of cdf-table and alias-table
-  int cells = 128;  // a side, of adaptive-cdf and wavelet
+  int nodes = 64;   // per side, of cdf-table and alias-table
+  int cells = 128;  // per side, of adaptive-cdf and wavelet
   // Of the mean of a slice: no support is lost between the points of a table, and no weight is huge.
   float node_floor = 1e-4f, cell_floor = 1e-3f;
   CurveOptions curve{};

@@ -19,7 +19,7 @@ namespace reflectree {
 struct WarpOptions {
   int slices = 16;
   int normals_width = 128, normals_height = 64;  // nodes of theta_h, phi_h
-  int target_nodes = 64;                         // a side
+  int target_nodes = 64;                         // per side
 };
 
 // D over x = sqrt(2 theta_h / pi), `count` equal steps from 0 to 1; the projected area of the normal is 1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How two pictures of the same scene differ, a channel at a time; by z-scores where both carry the standard
+// How two pictures of the same scene differ, channel by channel; by z-scores where both carry the standard
 // errors of their pixels.
 #pragma once
 
@@ -15,13 +15,13 @@ struct ChannelDifference {
   double mean_a = 0, mean_b = 0;
   double mean_error = 0;    // standard error of mean_a - mean_b; 0 where it is not known
   double mse = 0;           // mean of (a - b)^2
-  double relative_mse = 0;  // mean of (a - b)^2 / (b^2 + .01)
+  double relative_mse = 0;  // mean of (a - b)^2 / (b^2 + 0.01)
 };
 
 inline constexpr std::array<double, 7> z_probabilities{.01, .05, .25, .5, .75, .95, .99};
 // Quantiles of (a - b) / standard error, over all channels, of blocks of pixels; a standard normal has -2.33,
-// -1.64, -.67, 0, .67, 1.64, 2.33. Left out: blocks whose error is not known or zero, and those with a pixel
-// whose relative standard error in `b` exceeds `trust`: it comes from few bright samples (caustics).
+// -1.64, -0.67, 0, 0.67, 1.64, 2.33. Left out: blocks whose error is not known or zero, and those with a
+// pixel whose relative standard error in `b` exceeds `trust`: it comes from few bright samples (caustics).
 struct ZScores {
   std::array<double, 7> quantiles{};
   std::size_t blocks = 0, left_out = 0;

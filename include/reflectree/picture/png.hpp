@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG files of 8 bits a channel, written through libpng.
+// PNG files of 8 bits per channel, written through libpng.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene as plain data: shapes in world space, what covers them, lights, one camera. Read from the part of
-// Mitsuba 3's XML that docs/architecture.md names; whatever else a file asks for is an Error with its line.
+// Mitsuba 3's XML that docs/render.md names; whatever else a file asks for is an Error with its line.
 #pragma once
 
 #include <array>
@@ -81,7 +81,7 @@ struct Transport {
   enum class Method { path, direct, recursive, photons } method = Method::path;
   int split = 0;  // directions at a hit, photons' gathering and direct light included; 0: the method's own
   struct Photons {
-    int count = 0;           // of light paths a pass; 0: as many as pixels
+    int count = 0;           // of light paths per pass; 0: as many as pixels
     float radius = 0;        // within which the first pass looks for photons; 0: a few pixels wide
     float shrink = 2 / 3.f;  // alpha of the progressive radius; 1: it stays
     bool gather = true;      // final gathering: indirect light is looked up one bounce away

@@ -60,7 +60,7 @@ inline FloatVector root(FloatVector a) {
 #endif
 }  // namespace detail
 
-// A truth a lane: all bits or none.
+// One truth per lane: all bits or none.
 struct LaneMask {
   detail::IntVector bits;
   REFLECTREE_INLINE friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }

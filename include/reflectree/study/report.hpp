@@ -15,12 +15,12 @@ std::string study_html(std::span<const MaterialResult> materials, const Verdict&
                        std::span<const Illumination> lights, const StudyOptions& options,
                        const StudyMeta& meta);
 
-// RMSE over samples, or over time (microseconds), both logarithmic, at the theta_o nearest to 45 degrees: a
-// curve a sampler, labelled at its end. Random points follow the law var / n + bias^2 of the cell, stratified
-// ones what was measured.
+// RMSE over samples, or over time (microseconds), both logarithmic, at the theta_o nearest to 45 degrees:
+// one curve per sampler, labelled at its end. Random points follow the law var / n + bias^2 of the cell,
+// stratified ones what was measured.
 draw::Figure error_figure(const MaterialResult& material, std::size_t light, const std::string& light_name,
                           const StudyOptions& options, bool over_time);
-// One number a sampler on a log scale; those not above 0 are left out.
+// One number per sampler on a log scale; those not above 0 are left out.
 struct Bar {
   std::string name;
   double value = 0;
@@ -32,7 +32,7 @@ draw::Figure bar_figure(const std::string& title, const std::string& unit, std::
 // the relative RMSE^2 times time, over the best of its column.
 draw::Figure heat_figure(const MaterialResult& material, std::span<const Illumination> lights,
                          const StudyOptions& options);
-// In the plane of incidence, a panel a theta_o.
+// In the plane of incidence, one panel per theta_o.
 draw::Figure slice_figure(const MaterialResult& material, const StudyOptions& options);
 
 }  // namespace reflectree::study

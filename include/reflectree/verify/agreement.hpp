@@ -11,7 +11,7 @@
 namespace reflectree {
 
 struct AgreementOptions {
-  int draws = 60;  // a viewer and way
+  int draws = 60;  // per viewer and way
   std::uint64_t seed = 1;
   double tolerance = 1e-4;       // relative
   double max_exceptions = 1e-3;  // share of all draws outside of it: float borders of leaves
@@ -26,7 +26,7 @@ struct AgreementOptions {
 //   support          where f is not 0, neither is the other mode's density
 //   target           exact mode: the target of the weight is the albedo, whatever the direction
 //   mode_agrees      exact mode: pdf == t cos_i / albedo by the referee's own target
-// One result a kind for each way.
+// One result per kind and way.
 std::vector<CheckResult> check_agreement(const Suspect& suspect, std::span<const Direction> viewers,
                                          const AgreementOptions& options = {}, const Host& host = {});
 

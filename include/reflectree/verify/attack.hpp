@@ -37,12 +37,13 @@ AttackResult attack(const RatioFunction& ratio, const AttackOptions& options = {
 using RatioTrial = std::function<double(Pcg32& u)>;
 
 // The overshooting mass 1 - int min(T, aM) / int T = E[(r - 1)+] / E[r] over trials, by which the density
-// drawn differs at most. upper: 95 % bound, the smaller of two at 97.5 % each: the rate of overshoots
-// (Clopper- Pearson) times the largest excess, which is tight when none is seen; and the empirical Bernstein
-// bound of the mean, tight when many are small. Both need the largest possible excess: the worst that the
-// trials or a preceding attack found. surely: the mass is above it but for one case in a million; the rates
-// of excesses octave by octave (Clopper- Pearson, at a share of that level each), times the octave's lower
-// end.
+// drawn differs at most.
+//   upper   95 % bound, the smaller of two at 97.5 % each: the rate of overshoots (Clopper-Pearson) times the
+//           largest excess, which is tight when none is seen; and the empirical Bernstein bound of the mean,
+//           tight when many are small. Both need the largest possible excess: the worst that the trials or a
+//           preceding attack found.
+//   surely  the mass is above it but for one case in a million: the rates of excesses octave by octave
+//           (Clopper-Pearson, at a share of that level each), times the octave's lower end.
 struct OvershootMass {
   double estimate = 0, upper = 0, worst = 0;
   std::uint64_t trials = 0, overshoots = 0;

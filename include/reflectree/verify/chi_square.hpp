@@ -21,7 +21,7 @@ struct ChiSquareOptions {
 // Directions drawn for bins.wo, sorted into the bins. Independent of the number of threads.
 struct Tally {
   std::string sampler;
-  std::vector<std::uint64_t> count;     // a bin
+  std::vector<std::uint64_t> count;     // per bin
   std::vector<double> weight, weight2;  // sum of the weights, and of their squares
   std::uint64_t samples = 0;
   std::uint64_t none = 0;     // "no sample"

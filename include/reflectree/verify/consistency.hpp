@@ -13,7 +13,7 @@
 namespace reflectree {
 
 struct ConsistencyOptions {
-  int samples = 20'000;  // a direction wo
+  int samples = 20'000;  // per direction wo
   std::uint64_t seed = 1;
   double tolerance = 1e-4;           // relative; of pdf and weight * pdf
   double max_exceptions = 1e-3;      // share of samples outside the tolerance

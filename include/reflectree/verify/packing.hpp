@@ -12,9 +12,8 @@ namespace reflectree {
 //   packed_albedo    at every node, and at three places between two, linear interpolation
 //   packed_slabs     either side of every border finds its own slab
 //   packed_leaves    cells, slopes and heights are those of the canonical leaves
-//   packed_choice    the probabilities of the alias tables, added up in integers, are the masses; one leaf of
-//   a
-//                    slab takes up what is missing to a multiple of the count, less than one unit a leaf
+//   packed_choice    the probabilities of the alias tables, added up in integers, are the masses; one leaf
+//                    of a slab takes up what is missing to a multiple of the count, less than a unit per leaf
 //   packed_descent   every lower share is that of the masses below
 std::vector<CheckResult> check_packing(const SamplerData& data, const PackedSampler& packed);
 

@@ -47,7 +47,7 @@ PhotonMapper::PhotonMapper(const Scene& scene, Technique technique)
       first_radius_(options_.radius) {
   if (split_ > max_split) throw Error("too many directions", "--split", "choose 1 to 64");
   if (options_.count < 0 || count_ > largest_count)
-    throw Error("too many photons", "--photons", "choose at most 67108864 a pass; passes add up");
+    throw Error("too many photons", "--photons", "choose at most 67108864 per pass; passes add up");
   if (!(options_.shrink > 0 && options_.shrink <= 1))
     throw Error("photons' shrink is not in (0, 1]", "the integrator", "2/3 is usual, 1 keeps the radius");
   if (!(first_radius_ >= 0) || !std::isfinite(first_radius_))

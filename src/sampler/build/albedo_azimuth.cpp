@@ -112,13 +112,13 @@ void thin_out(std::vector<float>& columns, Values& values, double error) {
 }  // namespace
 
 AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
-                                const std::function<AlbedoTable(float phi_o)>& row_at,
+                                const std::function<AlbedoTable(float phi_o, bool checked)>& row_at,
                                 const std::function<bool()>& spent) {
   const float span = azimuth_span(symmetry);
   const bool even = symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::one_plane;
   const double error = double(relative_error);
   std::vector<AlbedoTable> rows;
-  for (std::size_t k = 0; k < 5; ++k) rows.push_back(row_at(span * (float(k) / 4)));
+  for (std::size_t k = 0; k < 5; ++k) rows.push_back(row_at(span * (float(k) / 4), true));
   std::vector<float> columns;
   Values values;
   double missed = 1;  // by the series through every second row, at the rows between
@@ -145,7 +145,7 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
     std::vector<AlbedoTable> finer;
     const std::size_t count = 2 * rows.size() - 1;
     for (std::size_t k = 0; k < count; ++k) {
-      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2]) : row_at(span * (float(k) / float(count - 1))));
+      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2]) : row_at(span * (float(k) / float(count - 1)), false));
     }
     rows = std::move(finer);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures from many samples a pixel, in passes: a render can stop after any of them, be saved, and go on.
+// Pictures from many samples per pixel, in passes: a render can stop after any of them, be saved, and go on.
 // A sample's random bits depend on seed, pixel, sample and point set alone: the picture is the same for any
 // number of threads, passes and interruptions. The strata of stratified points are as many as the samples
 // that the first render was asked for, columns by rows; the film keeps them.
@@ -11,7 +11,7 @@
 namespace reflectree::render {
 
 struct RenderOptions {
-  int samples = 0;  // a pixel; 0: the scene's
+  int samples = 0;  // per pixel; 0: the scene's
   std::uint64_t seed = 1;
   Technique technique = Technique::balance;
   double seconds = 0;  // > 0: stop after this time, between passes; `samples` is then ignored

@@ -20,7 +20,7 @@ class Integrator {
   virtual ~Integrator() = default;
   // The radiance that arrives along each, an estimate from its own bits alone; the bits are used up.
   virtual void radiance(std::span<CameraRay> rays, std::span<Rgb> out) const = 0;
-  // Called before each pass over the picture, of at most longest_pass() samples a pixel from `sample` on:
+  // Called before each pass over the picture, of at most longest_pass() samples per pixel from `sample` on:
   // where a sample's share of the work is common to all pixels (photons). Throws Cancelled.
   virtual void prepare(int /*sample*/, std::uint64_t /*seed*/, const Host& /*host*/) {}
   virtual int longest_pass() const { return 8; }

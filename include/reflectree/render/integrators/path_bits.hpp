@@ -5,7 +5,7 @@
 //   independent  every word from pcg32
 //   stratified   jittered cells: `columns * rows` samples in a row visit each cell of each pair of
 //                coordinates once, in random orders (Mitchell 1996; Shirley 1991)
-//   sobol        Owen-scrambled Sobol' points, an own scramble each pixel (math/low_discrepancy.hpp)
+//   sobol        Owen-scrambled Sobol' points, a scramble per pixel (math/low_discrepancy.hpp)
 #pragma once
 
 #include "reflectree/math/uniform_bits.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photon mapping (Jensen 1996), progressive (Hachisuka, Ogaki & Jensen 2008) by averaging independent passes
-// (Knaus & Zwicker 2011): each pass has maps of its own and one sample a pixel; its radius follows from
+// (Knaus & Zwicker 2011): each pass has maps of its own and one sample per pixel; its radius follows from
 //   r_{i+1}^2 = r_i^2 (i + alpha) / (i + 1)
 // (eq. 20 there), so that bias and variance of the mean both go to zero. Where the camera's path first meets
 // a surface that is not a delta alone,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light from infinitely far away: one radiance, or a latitude-longitude picture read as Mitsuba 3 does.
 // Its columns' centres lie at (x + 1/2) / width of the turn from -z towards x, its first and last row *on*
-// the poles +y and -y, and between them it is bilinear. Importance sampling: one constant density a cell
+// the poles +y and -y, and between them it is bilinear. Importance sampling: one constant density per cell
 // between four texels, drawn by rows and columns (Pharr, Jakob & Humphreys 2016, 14.2.4), each found by a
 // guide table (Chen & Asau 1974): monotone, in constant time, and seldom out of the cache.
 #pragma once
