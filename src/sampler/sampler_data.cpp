@@ -61,7 +61,7 @@ void validate(const SamplerData& data) {
   }
   validate(data.albedo);
   const std::vector<float>& azimuths = data.albedo.phi_o;
-  if (azimuths.empty() != data.frame.isotropic() ||
+  if (azimuths.empty() != data.frame.isotropic() || data.albedo.even != is_mirrored(data.frame.symmetry) ||
       (!azimuths.empty() && !(abs(azimuths.back() - azimuth_span(data.frame.symmetry)) <= 1e-4f))) {
     fail("the azimuths do not fit the symmetry", "albedo table");
   }

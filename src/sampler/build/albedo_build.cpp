@@ -30,7 +30,7 @@ class TableBuilder {
         budget_(budget),
         apart_{0, effort.limit},
         rim_(!field.frame.isotropic()) {
-    if (!field.frame.isotropic()) cells_x_ = 16, cells_y_ = 8;
+    if (!field.frame.isotropic()) cells_x_ = 12, cells_y_ = 6;
     std::vector<double> borders = first_borders(field.f.traits());
     for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
     std::sort(borders.begin(), borders.end());
@@ -65,7 +65,7 @@ class TableBuilder {
         }
       }
       std::vector<double> misses =
-          misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress, phi_o_});
+          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress, phi_o_});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
@@ -267,7 +267,7 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const std::ve
   if (field.frame.isotropic()) return build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
   const std::uint64_t start = effort.evaluations;
   const auto row_at = [&](float phi_o, bool checked) {
-    return build_row(field, phi_o, 0.5f * relative_error, jumps, seed, host, effort, budget / 8, checked);
+    return build_row(field, phi_o, 0.35f * relative_error, jumps, seed, host, effort, budget / 8, checked);
   };
   const auto spent = [&] { return effort.evaluations - start > budget; };
   return albedo_over_azimuth(field.frame.symmetry, relative_error, row_at, spent);

@@ -105,7 +105,9 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
   GrowthRules rules{goal, 1, 2000, false, true, analyse_exact, 1e30f};
   const std::vector<KnownBox> boxes = trial_boxes(seen.frame);
   if (!seen.frame.isotropic()) {
-    flat.phi_o = {0, azimuth_span(seen.frame.symmetry)}, flat.albedo = {1, 1, 1, 1};
+    const float span = azimuth_span(seen.frame.symmetry);
+    flat.phi_o = {0, 0.5f * span, span}, flat.albedo = {1, 1, 1, 1, 1, 1};
+    flat.even = is_mirrored(seen.frame.symmetry);
   }
   Domain best;
   std::vector<Slab> best_slabs;
@@ -142,6 +144,8 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
       least = price, best = domain, best_mass = mass, best_slabs = std::move(slabs);
     // A domain that needs in one slab twice as many leaves as the best in all cannot win.
     rules.max_leaves = std::size_t(clamp(2 * least, 32.f, 2000.f));
+    if (!seen.frame.isotropic())  // of many boxes: one that needs so many more than they do on average
+      rules.max_leaves = std::size_t(clamp(6 * least / float(boxes.size()), 32.f, 2000.f));
   }
   // Leaves grow as 1 / (what is left of the trials allowed): past half of them a whole square is cheaper.
   if (best.half() && !seen.mirror_symmetric) {
