@@ -7,6 +7,7 @@
 #include "measured_data.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/sampler_file.hpp"
 #include "reflectree/picture/image.hpp"
@@ -92,9 +93,7 @@ TEST(FileKind, EveryReaderSaysIt) {
   EXPECT_NE(error_of([&] { read_image(page); }).find("sky.hdr: an HTML page; fetch the file itself"),
             std::string::npos);
   EXPECT_EQ(error_of([&] { load_brdf(window); }),
-            window +
-                ": a WINDOW/Radiance BSDF XML file, a format that is not read; name an RGL "
-                "tensor_file, a MERL .binary, or a CSV of NBRDF, SGD or ABC materials");
+            window + ": a WINDOW/Radiance BSDF XML file, a format that is not read; name " + format_names());
   EXPECT_EQ(error_of([&] { load_sampler(nothing); }), nothing + ": empty; fetch the file again");
   for (const char* inside : {"", "."}) {
     const std::string path = folder / inside;
