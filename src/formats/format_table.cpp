@@ -11,6 +11,7 @@
 #include "reflectree/formats/model_tables.hpp"
 #include "reflectree/formats/rgl.hpp"
 #include "reflectree/text/joined_words.hpp"
+#include "zemax.hpp"
 
 namespace reflectree {
 
@@ -76,6 +77,17 @@ constexpr MaterialFormat formats[] = {
      .read = read_merl_material,
      .list_members = merl_lookups,
      .facts = merl_facts},
+    {.key = "zemax",
+     .name = "a Zemax .bsdf",
+     .kind = "a measured material (Zemax .bsdf)",
+     .example = "paint.bsdf",
+     .ending = ".bsdf",
+     .max_bytes = max_zemax_bytes,
+     .members = FileMembers::ways,
+     .recognised = is_zemax_file,
+     .read = read_zemax,
+     .list_members = zemax_members,
+     .facts = zemax_facts},
     {.key = "table",
      .name = "a CSV of NBRDF, SGD or ABC materials",
      .kind = "a table of materials (CSV)",
@@ -123,7 +135,8 @@ std::string format_names() {
 std::vector<std::string_view> material_endings() {
   std::vector<std::string_view> endings;
   for (const MaterialFormat& format : formats) {
-    if (format.members != FileMembers::materials) endings.push_back(format.ending);
+    const bool new_one = std::find(endings.begin(), endings.end(), format.ending) == endings.end();
+    if (format.members != FileMembers::materials && new_one) endings.push_back(format.ending);
   }
   return endings;
 }

@@ -34,6 +34,14 @@ inline std::vector<Bytes> example_files(std::string_view key) {
     files = {synthetic::rgl_file(), synthetic::rgl_file(small)};
   }
   if (key == "merl") files = {synthetic::merl_start(180), synthetic::merl_start(360)};
+  if (key == "zemax") {
+    synthetic::ZemaxRecipe flat, coloured;
+    flat.symmetry = "PlaneSymmetrical";
+    flat.rotation = {0}, flat.azimuth = {0, 90, 180};
+    coloured.content = "XYZ";
+    coloured.rotation = {0}, coloured.incidence = {30}, coloured.azimuth = {0, 180, 360};
+    files = {synthetic::zemax_file(), synthetic::zemax_file(flat), synthetic::zemax_file(coloured)};
+  }
   if (key == "table") {
     files = {synthetic::as_bytes(synthetic::neural_csv()), synthetic::as_bytes(synthetic::sgd_csv()),
              synthetic::as_bytes(synthetic::abc_csv())};

@@ -7,6 +7,7 @@
 #include "measured_data.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/sampler_file.hpp"
 #include "reflectree/picture/image.hpp"
@@ -58,7 +59,7 @@ TEST(FileKind, TellsWhatItIs) {
   EXPECT_EQ(kind_of("II*\0x"s), "a TIFF picture");
   EXPECT_EQ(kind_of(std::string(1000, '\0')), "nothing but zeros");
   EXPECT_EQ(kind_of("#x\nSymmetry  Asymmetrical\nScatterType  BRDF\nSampleRotation  1\n"),
-            "a Zemax BSDF, a format that is not read");
+            "a measured material (Zemax .bsdf)");
 }
 
 TEST(FileKind, CallsMaterialsByTheirFormat) {
@@ -92,9 +93,7 @@ TEST(FileKind, EveryReaderSaysIt) {
   EXPECT_NE(error_of([&] { read_image(page); }).find("sky.hdr: an HTML page; fetch the file itself"),
             std::string::npos);
   EXPECT_EQ(error_of([&] { load_brdf(window); }),
-            window +
-                ": a WINDOW/Radiance BSDF XML file, a format that is not read; name an RGL "
-                "tensor_file, a MERL .binary, or a CSV of NBRDF, SGD or ABC materials");
+            window + ": a WINDOW/Radiance BSDF XML file, a format that is not read; name " + format_names());
   EXPECT_EQ(error_of([&] { load_sampler(nothing); }), nothing + ": empty; fetch the file again");
   for (const char* inside : {"", "."}) {
     const std::string path = folder / inside;
@@ -114,7 +113,7 @@ TEST(FileKind, KnowsTheSharedFiles) {
   }
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/zemax")) {
     const std::string kind(recognise_file(read_file(entry.path().string(), 1U << 30U)).what);
-    EXPECT_EQ(kind.rfind("a Zemax BSDF", 0), 0U) << entry.path() << kind;
+    EXPECT_EQ(kind, "a measured material (Zemax .bsdf)") << entry.path();
     ++zemax;
   }
   EXPECT_EQ(windows, 7);

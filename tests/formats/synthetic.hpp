@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <utility>
@@ -135,5 +136,52 @@ inline std::string abc_csv() {
   return "material,kd_r,kd_g,kd_b,A_r,A_g,A_b,B,C,ior\nbronze,0.025,0.022,0.016,51.7,37.9,27.4,10482.13,0."
          "8167,2.2365\n";
 }
+
+// A Zemax .bsdf of angles in degrees; value(curve, rotation, incidence, azimuth, radial) in radians.
+struct ZemaxRecipe {
+  std::string symmetry = "Asymmetrical4D", content = "Monochrome", type = "BRDF";
+  std::vector<double> rotation{0, 120, 240, 360}, incidence{10, 50}, azimuth{0, 90, 180, 270, 360},
+      radial{0, 20, 60, 100};
+  std::function<double(int c, double r, double i, double a, double s)> value = [](int c, double r, double i,
+                                                                                  double a, double s) {
+    return 0.3 + 0.1 * c + 0.1 * std::cos(r) + 0.05 * std::sin(a + i) * std::sin(s);
+  };
+};
+inline std::string zemax_text(const ZemaxRecipe& r) {
+  constexpr double degree = 3.14159265358979323846 / 180;
+  char number[32];
+  const auto printed = [&number](double v) {
+    std::snprintf(number, sizeof number, "%.9g", v);
+    return std::string(number);
+  };
+  const auto list = [&](const char* name, const std::vector<double>& angles) {
+    std::string text = std::string(name) + "\t" + std::to_string(angles.size()) + "\r\n";
+    for (const double a : angles) text += printed(a) + "\t";
+    return text + "\r\n";
+  };
+  std::string text = "# made by a test\r\nSource\tMeasured\r\nSymmetry\t" + r.symmetry +
+                     "\r\nSpectralContent  " + r.content + "\r\nScatterType " + r.type + "\r\n" +
+                     list("SampleRotation", r.rotation) + list("AngleOfIncidence", r.incidence) +
+                     list("ScatterAzimuth", r.azimuth) + list("ScatterRadial", r.radial) + "\r\n";
+  const bool xyz = r.content == "XYZ";
+  for (int c = 0; c < (xyz ? 3 : 1); ++c) {
+    text += (xyz ? std::string("Tristimulus") + "XYZ"[c] : "Monochrome") + "\r\nDataBegin\r\n";
+    for (const double rotation : r.rotation) {
+      for (const double incidence : r.incidence) {
+        text += "TIS\t0.5\r\n";
+        for (const double azimuth : r.azimuth) {
+          for (const double radial : r.radial)
+            text += printed(r.value(c, rotation * degree, incidence * degree, azimuth * degree,
+                                    radial * degree)) +
+                    "\t";
+          text += "\r\n";
+        }
+      }
+    }
+    text += "DataEnd\r\n";
+  }
+  return text;
+}
+inline Bytes zemax_file(const ZemaxRecipe& recipe = {}) { return as_bytes(zemax_text(recipe)); }
 
 }  // namespace reflectree::synthetic
