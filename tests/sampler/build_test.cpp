@@ -208,7 +208,7 @@ TEST(Options, TheDomainCanBeChosen) {
       const auto s = make_sampler(f, options);
       EXPECT_EQ(s.exact.packed().domain, *options.domain);
       const auto results = judge(s, target_function(f), wo_at(50, 1), 100'000);
-      EXPECT_TRUE(all_passed(results)) << name_of(kind) << half << '\n' << to_text(results);
+      EXPECT_TRUE(all_passed(results)) << name_of(kind) << int(symmetry) << '\n' << to_text(results);
     }
   }
 }

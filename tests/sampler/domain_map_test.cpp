@@ -25,7 +25,8 @@ std::string label(const Domain& d, double theta) {
 TEST(DomainMap, LiftsToUnitDirectionsAboveTheHorizon) {
   Pcg32 u(1);
   for (const Symmetry symmetry : {Symmetry::none, Symmetry::mirror}) {
-    for (const Domain& d : domains(half)) {
+    const bool half = symmetry == Symmetry::mirror;
+    for (const Domain& d : domains(symmetry)) {
       for (const double theta : elevations_deg) {
         const auto check = [&](float x, float y) {
           const DomainPoint p = lift(d, wo_at(theta), {x, y});
@@ -54,7 +55,7 @@ TEST(DomainMap, LiftsToUnitDirectionsAboveTheHorizon) {
 // The directions agree everywhere; the points wherever float directions tell them apart.
 TEST(DomainMap, LowerInvertsLift) {
   Pcg32 u(2);
-  for (const Domain& d : domains(false)) {
+  for (const Domain& d : domains(Symmetry::none)) {
     for (const double theta : elevations_deg) {
       const Direction wo = wo_at(theta);
       int far_directions = 0, far_points = 0;
@@ -77,7 +78,7 @@ TEST(DomainMap, LowerInvertsLift) {
 // projected_area = cos_i |dwi/dx x dwi/dy| * area of the square, by central differences.
 TEST(DomainMap, ProjectedAreaIsTheJacobian) {
   Pcg32 u(3);
-  for (const Domain& d : domains(false)) {
+  for (const Domain& d : domains(Symmetry::none)) {
     for (const double theta : {0., 30., 60., 80.}) {
       int exceptions = 0;
       const int n = 500;
@@ -100,7 +101,8 @@ TEST(DomainMap, ProjectedAreaIsTheJacobian) {
 // The projected solid angle of the hemisphere is pi, whatever the map.
 TEST(DomainMap, ProjectedAreaIntegratesToPi) {
   for (const Symmetry symmetry : {Symmetry::none, Symmetry::mirror}) {
-    for (const Domain& d : domains(half)) {
+    const bool half = symmetry == Symmetry::mirror;
+    for (const Domain& d : domains(symmetry)) {
       for (const double theta : elevations_deg) {
         double sum = 0;
         const int n = 1000;

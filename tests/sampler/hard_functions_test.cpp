@@ -45,7 +45,7 @@ TEST(Asymmetry, AtSomeElevationsAloneTakesTheWholeSquare) {
   expect_right(make_sampler(f, data), f, {0, 60, 88}, "lopsided at grazing");
   BuildOptions folded;
   folded.domain = data.domain;
-  folded.domain->half = true;
+  folded.domain->symmetry = Symmetry::mirror;
   EXPECT_GT(build(f, folded).report.expected_trials, 1.3f);
 }
 

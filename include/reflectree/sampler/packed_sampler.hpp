@@ -21,7 +21,7 @@ struct PackedForest {
   // Of isotropic functions.
   const PackedSlab& slab_at(float cos_theta_o) const { return slabs[lookup(cos_theta_o)]; }
   const PackedSlab& slab_at(const Incidence& in) const {
-    return tree.empty() ? slab_at(in) : slabs[tree(in.wo.z, in.phi_o)];
+    return tree.empty() ? slab_at(in.wo.z) : slabs[tree(in.wo.z, in.phi_o)];
   }
 };
 
