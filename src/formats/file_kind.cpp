@@ -63,10 +63,6 @@ std::string lowered(std::string_view text) {
 bool contains(std::string_view text, std::string_view word) { return text.find(word) != text.npos; }
 
 FileKind markup(std::string_view text) {
-  // Radiance's tools may write a line of their own before the XML.
-  if (contains(text, "<WindowElement")) {
-    return {"a WINDOW/Radiance BSDF XML file, a format that is not read", ""};
-  }
   const std::string start = lowered(text);
   if (start.rfind("<!doctype html", 0) == 0 || start.rfind("<html", 0) == 0 ||
       (start.rfind("<", 0) == 0 && contains(start, "<html"))) {

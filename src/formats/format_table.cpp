@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "format_facts.hpp"
+#include "klems.hpp"
 #include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file_kind.hpp"
@@ -88,6 +89,17 @@ constexpr MaterialFormat formats[] = {
      .read = read_zemax,
      .list_members = zemax_members,
      .facts = zemax_facts},
+    {.key = "klems",
+     .name = "a WINDOW/Radiance BSDF XML",
+     .kind = "a measured material (WINDOW/Radiance BSDF XML)",
+     .example = "blinds.xml",
+     .ending = ".xml",
+     .max_bytes = max_klems_bytes,
+     .members = FileMembers::ways,
+     .recognised = is_window_xml,
+     .read = read_klems,
+     .list_members = klems_members,
+     .facts = klems_facts},
     {.key = "table",
      .name = "a CSV of NBRDF, SGD or ABC materials",
      .kind = "a table of materials (CSV)",

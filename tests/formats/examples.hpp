@@ -42,6 +42,11 @@ inline std::vector<Bytes> example_files(std::string_view key) {
     coloured.rotation = {0}, coloured.incidence = {30}, coloured.azimuth = {0, 180, 360};
     files = {synthetic::zemax_file(), synthetic::zemax_file(flat), synthetic::zemax_file(coloured)};
   }
+  if (key == "klems") {
+    synthetic::KlemsRecipe rows;
+    rows.structure = "Rows", rows.wavelengths = {"Solar", "Visible"};
+    files = {synthetic::klems_file(), synthetic::klems_file(rows)};
+  }
   if (key == "table") {
     files = {synthetic::as_bytes(synthetic::neural_csv()), synthetic::as_bytes(synthetic::sgd_csv()),
              synthetic::as_bytes(synthetic::abc_csv())};

@@ -123,7 +123,8 @@ TEST(FormatTableWords, AreDistinct) {
   EXPECT_EQ(keys.size(), material_formats().size());
   EXPECT_EQ(kinds.size(), material_formats().size());
   EXPECT_EQ(format_names(),
-            "an RGL tensor_file, a MERL .binary, a Zemax .bsdf, or a CSV of NBRDF, SGD or ABC materials");
+            "an RGL tensor_file, a MERL .binary, a Zemax .bsdf, a WINDOW/Radiance BSDF XML, or a CSV of "
+            "NBRDF, SGD or ABC materials");
 }
 
 }  // namespace

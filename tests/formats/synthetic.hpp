@@ -184,4 +184,56 @@ inline std::string zemax_text(const ZemaxRecipe& r) {
 }
 inline Bytes zemax_file(const ZemaxRecipe& recipe = {}) { return as_bytes(zemax_text(recipe)); }
 
+// A BSDF XML of one basis; value(wavelength, front, in, out) in sr^-1.
+struct KlemsRecipe {
+  std::string structure = "Columns", basis = "LBNL/Test";
+  bool defined = true;  // the basis in the file
+  std::vector<double> theta{0, 20, 60, 90};
+  std::vector<int> patches{1, 4, 6};
+  std::vector<std::string> wavelengths{"Visible"},
+      directions{"Transmission Front", "Reflection Back", "Reflection Front"};
+  std::function<double(int w, bool front, int in, int out)> value = [](int w, bool front, int in, int out) {
+    return 0.01 * w + (front ? 0.1 : 0.2) + 0.001 * in + 0.0001 * out;
+  };
+};
+inline std::string klems_xml(const KlemsRecipe& r) {
+  int size = 0;
+  for (const int n : r.patches) size += n;
+  std::string text =
+      "Recover using: a command\n<?xml version=\"1.0\"?>\n<!-- by a <test> -->\n<WindowElement xmlns='x'>\n"
+      "<Optical><Layer>\n<Material><Name>cloth &amp; paint</Name><Thickness unit=\"Meter\"/></Material>\n"
+      "<DataDefinition><IncidentDataStructure>" +
+      r.structure + "</IncidentDataStructure>\n";
+  if (r.defined) {
+    text += "<AngleBasis><AngleBasisName>" + r.basis + "</AngleBasisName>\n";
+    for (std::size_t i = 0; i < r.patches.size(); ++i) {
+      text += "<AngleBasisBlock><Theta>0</Theta><nPhis>" + std::to_string(r.patches[i]) +
+              "</nPhis><ThetaBounds><LowerTheta>" + std::to_string(r.theta[i]) + "</LowerTheta><UpperTheta>" +
+              std::to_string(r.theta[i + 1]) + "</UpperTheta></ThetaBounds></AngleBasisBlock>\n";
+    }
+    text += "</AngleBasis>\n";
+  }
+  text += "</DataDefinition>\n";
+  for (std::size_t w = 0; w < r.wavelengths.size(); ++w) {
+    text += "<WavelengthData><Wavelength unit=\"Integral\">" + r.wavelengths[w] + "</Wavelength>\n";
+    for (const std::string& direction : r.directions) {
+      text += "<WavelengthDataBlock><WavelengthDataDirection>" + direction +
+              "</WavelengthDataDirection><ColumnAngleBasis>" + r.basis +
+              "</ColumnAngleBasis><RowAngleBasis>" + r.basis + "</RowAngleBasis>\n<ScatteringData>\n";
+      for (int row = 0; row < size; ++row) {
+        for (int column = 0; column < size; ++column) {
+          const bool rows = r.structure == "Rows", front = direction.ends_with("Front");
+          const double v = r.value(int(w), front, rows ? row : column, rows ? column : row);
+          text += std::to_string(v) + (row % 2 ? ", " : "\t");
+        }
+        text += "\n";
+      }
+      text += "</ScatteringData></WavelengthDataBlock>\n";
+    }
+    text += "</WavelengthData>\n";
+  }
+  return text + "</Layer></Optical></WindowElement>\n";
+}
+inline Bytes klems_file(const KlemsRecipe& recipe = {}) { return as_bytes(klems_xml(recipe)); }
+
 }  // namespace reflectree::synthetic

@@ -58,6 +58,12 @@ void run_zemax(ByteView bytes) {
   expect_error_or_success([&] { measured_facts(bytes, "zemax"); });
 }
 
+void run_klems(ByteView bytes) {
+  for (const char* member : {"", "back", "solar-front"})
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "klems", member)); });
+  expect_error_or_success([&] { measured_facts(bytes, "klems"); });
+}
+
 void run_table(ByteView bytes) {
   expect_error_or_success([&] {
     const ParameterTable table = read_parameter_table(bytes, "table");
@@ -122,6 +128,7 @@ void run_sampler(ByteView bytes) {
 std::vector<Bytes> rgl_seeds() { return example_files("rgl"); }
 std::vector<Bytes> merl_seeds() { return example_files("merl"); }
 std::vector<Bytes> zemax_seeds() { return example_files("zemax"); }
+std::vector<Bytes> klems_seeds() { return example_files("klems"); }
 std::vector<Bytes> table_seeds() { return example_files("table"); }
 std::vector<Bytes> material_seeds() {  // of every format of the table
   std::vector<Bytes> seeds;
@@ -149,6 +156,7 @@ std::span<const Target> targets() {
   static const Target all[] = {{"rgl", run_rgl, rgl_seeds},
                                {"merl", run_merl, merl_seeds},
                                {"zemax", run_zemax, zemax_seeds},
+                               {"klems", run_klems, klems_seeds},
                                {"table", run_table, table_seeds},
                                {"material", run_material, material_seeds},
                                {"sampler", run_sampler, sampler_seeds},
