@@ -20,9 +20,20 @@ namespace reflectree {
 
 namespace {
 
-AnyBrdf read_rgl_material(ByteView bytes, const std::string& path, const std::string&) {
-  RglTable table = read_rgl(bytes, path);
-  table.name = file_text(path, "");
+std::vector<std::string> rgl_members(ByteView bytes, const std::string& path) {
+  if (rgl_layout(bytes, path).wavelengths.empty()) return {};
+  return {"spectrum", "rgb"};
+}
+
+AnyBrdf read_rgl_material(ByteView bytes, const std::string& path, const std::string& member) {
+  const bool as_rgb = rgl_as_rgb(bytes, path, member);
+  if (rgl_layout(bytes, path).is_isotropic_rgb()) {
+    RglTable table = read_rgl(bytes, path);
+    table.name = file_text(path, "");
+    return table;
+  }
+  RglWideTable table(read_rgl_wide_fields(bytes, path, as_rgb));
+  table.name = file_text(path, member);
   return table;
 }
 
@@ -63,9 +74,10 @@ constexpr MaterialFormat formats[] = {
      .example = "paper_white.bsdf",
      .ending = ".bsdf",
      .max_bytes = max_rgl_bytes,
-     .members = FileMembers::none,
+     .members = FileMembers::ways,
      .recognised = is_tensor_file,
      .read = read_rgl_material,
+     .list_members = rgl_members,
      .facts = rgl_facts},
     {.key = "merl",
      .name = "a MERL .binary",

@@ -9,6 +9,7 @@
 #include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/text/number_text.hpp"
+#include "spectral_colour.hpp"
 #include "text_lines.hpp"
 
 namespace reflectree {
@@ -296,12 +297,6 @@ std::vector<float> radians(const Angles& angles) {
   return all;
 }
 
-// XYZ of the CIE to linear RGB with the primaries and the white of ITU-R BT.709.
-Rgb rgb_of_xyz(float x, float y, float z) {
-  return {3.2404542f * x - 1.5371385f * y - 0.4985314f * z, -0.9692660f * x + 1.8760108f * y + 0.0415560f * z,
-          0.0556434f * x - 0.2040259f * y + 1.0572252f * z};
-}
-
 struct Reading {
   ZemaxFile file;
   Entries entries;
@@ -341,7 +336,8 @@ SpecularTable<float> grey_table(Reading& reading, const std::string& name) {
 SpecularTable<Rgb> colour_table(Reading& reading, const std::string& name) {
   SpecularTable<Rgb> table = empty_table<Rgb>(reading, name);
   const auto& v = reading.file.values;
-  for (std::size_t i = 0; i < v[0].size(); ++i) table.values.push_back(rgb_of_xyz(v[0][i], v[1][i], v[2][i]));
+  for (std::size_t i = 0; i < v[0].size(); ++i)
+    table.values.push_back(rgb_of_xyz(double(v[0][i]), double(v[1][i]), double(v[2][i])));
   return table;
 }
 

@@ -31,7 +31,13 @@ inline std::vector<Bytes> example_files(std::string_view key) {
     synthetic::RglRecipe small;
     small.width = small.height = small.colours = small.nodes = 2;
     small.theta_o = {0.f, 1.5f};
-    files = {synthetic::rgl_file(), synthetic::rgl_file(small)};
+    synthetic::RglWideRecipe turned, spectral;
+    turned.width = turned.height = turned.colours = turned.nodes = 3;
+    turned.phi_o = synthetic::azimuths(3, 4);
+    spectral.width = spectral.height = spectral.colours = spectral.nodes = 2;
+    spectral.phi_o = {0}, spectral.wavelengths = {400, 500, 600, 700};
+    files = {synthetic::rgl_file(), synthetic::rgl_file(small), synthetic::rgl_wide_file(turned),
+             synthetic::rgl_wide_file(spectral)};
   }
   if (key == "merl") files = {synthetic::merl_start(180), synthetic::merl_start(360)};
   if (key == "zemax") {

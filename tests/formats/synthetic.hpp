@@ -98,6 +98,70 @@ inline std::vector<Field> rgl_fields(const RglRecipe& r) {
 
 inline Bytes rgl_file(const RglRecipe& recipe = {}) { return tensor_file(rgl_fields(recipe)); }
 
+// A material of several azimuths, or of several wavelengths; p is the index of phi_o.
+struct RglWideRecipe {
+  std::vector<float> phi_o, theta_o{0.f, 0.5f, 1.1f, 1.5707964f}, wavelengths;  // none: RGB
+  std::function<float(float u, float v)> sigma = [](float u, float v) { return 1 - 0.7f * u + 0.1f * v; };
+  std::function<float(float u, float v)> ndf = [](float u, float v) {
+    return 0.3f + 2 * (1 - u) + v * (1 - v);
+  };
+  std::function<float(int p, int t, float u, float v)> vndf = [](int p, int t, float u, float v) {
+    return 1 + 0.3f * float(t) * u + std::cos(6.2831853f * v + 0.4f * float(p)) * (1 - u);
+  };
+  std::function<float(int p, int t, int c, float x, float y)> colour = [](int p, int t, int c, float x,
+                                                                          float y) {
+    return 0.2f + 0.1f * float(c % 7) + 0.05f * float(t) * x + 0.3f * y * (1 - x) + 0.02f * float(p) * x;
+  };
+  int width = 11, height = 9, colours = 5, nodes = 8;
+  bool jacobian = true;
+};
+// `count` nodes from -pi over a turn divided by `reduction`.
+inline std::vector<float> azimuths(int count, int reduction) {
+  std::vector<float> phi;
+  const double pi_d = 3.14159265358979323846;
+  for (int i = 0; i < count; ++i)
+    phi.push_back(float(-pi_d + 2 * pi_d / reduction * double(i) / double(count - 1)));
+  return phi;
+}
+inline std::vector<Field> rgl_wide_fields(const RglWideRecipe& r) {
+  const auto at = [](int i, int n) { return float(i) / float(n - 1); };
+  const bool spectral = !r.wavelengths.empty();
+  const int channels = spectral ? int(r.wavelengths.size()) : 3;
+  std::vector<float> sigma, ndf, vndf, colours;
+  for (int y = 0; y < r.nodes; ++y) {
+    for (int x = 0; x < r.nodes; ++x) {
+      sigma.push_back(r.sigma(at(x, r.nodes), at(y, r.nodes)));
+      ndf.push_back(r.ndf(at(x, r.nodes), at(y, r.nodes)));
+    }
+  }
+  for (int p = 0; p < int(r.phi_o.size()); ++p) {
+    for (int t = 0; t < int(r.theta_o.size()); ++t) {
+      for (int y = 0; y < r.height; ++y) {
+        for (int x = 0; x < r.width; ++x) vndf.push_back(r.vndf(p, t, at(x, r.width), at(y, r.height)));
+      }
+      for (int c = 0; c < channels; ++c) {
+        for (int y = 0; y < r.colours; ++y) {
+          for (int x = 0; x < r.colours; ++x)
+            colours.push_back(r.colour(p, t, c, at(x, r.colours), at(y, r.colours)));
+        }
+      }
+    }
+  }
+  const std::uint64_t n_p = r.phi_o.size(), n_t = r.theta_o.size(), w = std::uint64_t(r.width),
+                      h = std::uint64_t(r.height), m = std::uint64_t(r.colours), k = std::uint64_t(r.nodes);
+  std::vector<Field> fields{
+      floats("phi_i", {n_p}, r.phi_o),
+      floats("theta_i", {n_t}, r.theta_o),
+      floats("sigma", {k, k}, sigma),
+      floats("ndf", {k, k}, ndf),
+      floats("vndf", {n_p, n_t, h, w}, vndf),
+      floats(spectral ? "spectra" : "rgb", {n_p, n_t, std::uint64_t(channels), m, m}, colours),
+      Field{"jacobian", 1, {1}, {std::uint8_t(r.jacobian)}}};
+  if (spectral) fields.push_back(floats("wavelengths", {r.wavelengths.size()}, r.wavelengths));
+  return fields;
+}
+inline Bytes rgl_wide_file(const RglWideRecipe& recipe) { return tensor_file(rgl_wide_fields(recipe)); }
+
 inline Bytes as_bytes(const std::string& text) { return {text.begin(), text.end()}; }
 
 // A network of two materials, `one` and `two`, with weights from a small congruence.

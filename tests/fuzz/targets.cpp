@@ -30,6 +30,8 @@ void require_sound(const AnyBrdf& f) {
 
 void run_rgl(ByteView bytes) {
   expect_error_or_success([&] { require_sound(read_rgl(bytes, "rgl")); });
+  for (const char* member : {"", "rgb"})
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "rgl", member)); });
 }
 
 // The header as it comes; behind a good one, for one input in 64, the rest repeated up to the length that the
