@@ -11,10 +11,10 @@
 #include <iterator>
 #include <optional>
 
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/file_kind.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree::cli {
 

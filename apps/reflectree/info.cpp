@@ -119,8 +119,8 @@ void show_info(const Context& context, const std::string& command, const OpenedS
     line("anisotropic", fmt::format("{}, axis at {:.4g} degrees", reflectree::name_of(d.frame.symmetry),
                                     d.frame.axis * 180 / pi));
   }
-  line("exact", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.exact.size(), known, exact.total,
-                            exact.largest));
+  line("exact", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.exact.size(), known,
+                            exact.total, exact.largest));
   line("one-shot", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.one_shot.size(), known,
                                one_shot.total, one_shot.largest));
   line("bounds", bounds_text(s));

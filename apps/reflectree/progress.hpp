@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress on stderr: a bar on a terminal; elsewhere a plain line at most every second; with what is done and,
-// once a tenth of it is, the time left. Work that takes less than half a second shows nothing. The bar is wiped
-// when the display goes.
+// Progress on stderr: a bar on a terminal; elsewhere a plain line at most every second; with what is done
+// and, once a tenth of it is, the time left. Work that takes less than half a second shows nothing. The bar
+// is wiped when the display goes.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void show(float fraction);  // from any thread
+  void show(float fraction);      // from any thread
   void stage(const char* words);  // what is done from now on
 
  private:

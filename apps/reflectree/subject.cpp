@@ -26,8 +26,9 @@ Target parse_target(const std::string& text) {
 std::optional<Domain> parse_domain(const std::string& text) {
   if (text == "auto") return std::nullopt;
   const std::string_view word = std::string_view(text).substr(0, text.find(':'));
-  for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
-                                DomainKind::back_vector}) {
+  for (const DomainKind kind :
+       {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector, DomainKind::back_vector,
+        DomainKind::mirror_vector, DomainKind::normal_vector}) {
     if (text == name_of(kind)) return Domain{kind, Symmetry::mirror, 0};
   }
   if (word == name_of(DomainKind::stretched)) {

@@ -63,7 +63,8 @@ double oklab_lightness(Rgb8 c) {
   return 0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s;
 }
 
-std::string png_data_uri(int width, int height, std::span<const std::uint8_t> pixels, const Palette& colours) {
+std::string png_data_uri(int width, int height, std::span<const std::uint8_t> pixels,
+                         const Palette& colours) {
   return "data:image/png;base64," + base64(encode_indexed_png(width, height, pixels, colours));
 }
 

@@ -18,11 +18,13 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 // volume * density * albedo / projected_area of the tree of the slab of wo.
 template <class Trees>
-DiskImage tree_image(const SamplerData& data, const Partition& partition, const Trees& trees, Direction wo, int size) {
+DiskImage tree_image(const SamplerData& data, const Partition& partition, const Trees& trees, Direction wo,
+                     int size) {
   Incidence in;
   if (!find_incidence(pack_viewer(data), wo, in)) {
-    return disk_image([](std::span<const Direction>, std::span<float> out) { std::fill(out.begin(), out.end(), 0.f); },
-                      size);
+    return disk_image(
+        [](std::span<const Direction>, std::span<float> out) { std::fill(out.begin(), out.end(), 0.f); },
+        size);
   }
   const auto& tree = trees.at(slab_of(partition, in));
   const Domain& domain = data.domain;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace reflectree::draw {
 
 double Axis::at(double value) const {

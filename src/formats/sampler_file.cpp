@@ -193,6 +193,7 @@ void read_anisotropy(ByteReader& in, SamplerData& data) {
   data.frame.axis = read_float(in);
   data.domain.stretch = read_float(in);
   data.albedo.phi_o = read_floats(in);
+  data.albedo.even = is_mirrored(data.frame.symmetry);
 }
 
 struct ChunkReader {

@@ -20,13 +20,13 @@ WeightedLobe cosine(Rgb albedo) { return {mean(albedo), ProposalLobe{}}; }
 // was published has no such function.
 Lobes lobes_of(const Lambert& m, float) { return {cosine(m.rho)}; }
 Lobes lobes_of(const OrenNayar& m, float) { return {cosine(m.rho)}; }
-Lobes lobes_of(const Ggx& m, float) { return {{mean(m.f0), {LobeKind::ggx, m.alpha}}}; }
+Lobes lobes_of(const Ggx& m, float) { return {{mean(m.f0), {LobeKind::ggx, m.alpha.x}}}; }
 Lobes lobes_of(const Phong& m, float) { return {cosine(m.kd), {mean(m.ks), {LobeKind::power, m.n}}}; }
 Lobes lobes_of(const Ward& m, float) {
   return {cosine(m.kd), {mean(m.ks), {LobeKind::gaussian, m.alpha_x, m.alpha_y}}};
 }
 Lobes lobes_of(const CookTorrance& m, float) {
-  return {cosine(m.kd), {mean(m.ks * m.f0), {LobeKind::gaussian, m.alpha, m.alpha}}};
+  return {cosine(m.kd), {mean(m.ks * m.f0), {LobeKind::gaussian, m.alpha.x, m.alpha.y}}};
 }
 // Half and half, section 3 of the paper.
 Lobes lobes_of(const AshikhminShirley& m, float) {
@@ -44,7 +44,7 @@ Lobes lobes_of(const Lafortune& m, float) {
 // By Fresnel reflectance of wo, as rough plastics are shipped.
 Lobes lobes_of(const Plastic& m, float cos_theta_o) {
   const float fresnel = m.f0 + (1 - m.f0) * std::pow(1 - cos_theta_o, 5.f);
-  return {{(1 - fresnel) * mean(m.kd), ProposalLobe{}}, {fresnel, {LobeKind::ggx, m.alpha}}};
+  return {{(1 - fresnel) * mean(m.kd), ProposalLobe{}}, {fresnel, {LobeKind::ggx, m.alpha.x}}};
 }
 
 struct Textbook {

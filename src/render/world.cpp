@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shapes/flat.hpp"
 #include "reflectree/render/integrators/profile.hpp"
+#include "shapes/flat.hpp"
 
 namespace reflectree::render {
 

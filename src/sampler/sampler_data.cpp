@@ -43,7 +43,8 @@ void validate(const SamplerData& data) {
   if (!(abs(data.frame.axis) <= 7)) fail("the axis is not an angle", "frame of the viewer");
   check_coordinates(data.exact_partition, data.frame);
   check_coordinates(data.one_shot_partition, data.frame);
-  if (slab_count(data.exact_partition) != data.exact.size()) fail("one tree per slab is needed", "exact trees");
+  if (slab_count(data.exact_partition) != data.exact.size())
+    fail("one tree per slab is needed", "exact trees");
   if (slab_count(data.one_shot_partition) != data.one_shot.size())
     fail("one tree per slab is needed", "one-shot trees");
   if (data.exact.size() > 60000 || data.one_shot.size() > 60000) fail("more than 60000 slabs", "partitions");
@@ -61,7 +62,7 @@ void validate(const SamplerData& data) {
   }
   validate(data.albedo);
   const std::vector<float>& azimuths = data.albedo.phi_o;
-  if (azimuths.empty() != data.frame.isotropic() ||
+  if (azimuths.empty() != data.frame.isotropic() || data.albedo.even != is_mirrored(data.frame.symmetry) ||
       (!azimuths.empty() && !(abs(azimuths.back() - azimuth_span(data.frame.symmetry)) <= 1e-4f))) {
     fail("the azimuths do not fit the symmetry", "albedo table");
   }
@@ -74,7 +75,8 @@ void validate(const SamplerData& data) {
   }
   const Domain& d = data.domain;
   if (std::uint8_t(d.kind) > std::uint8_t(DomainKind::slope_star)) fail("unknown domain", "domain");
-  if (d.kind == DomainKind::slope_star && data.frame.isotropic()) fail("a star of slopes is not turned", "domain");
+  if (d.kind == DomainKind::slope_star && data.frame.isotropic())
+    fail("a star of slopes is not turned", "domain");
   if (!data.frame.isotropic() && d.half()) fail("half a square for an anisotropic function", "domain");
   if (!(d.stretch > 0.001f && d.stretch < 1000)) fail("the stretch is not in (0.001, 1000)", "domain");
   if (!(d.exponent >= 0 && d.exponent < 2)) fail("the exponent is not in [0, 2)", "domain");

@@ -29,8 +29,8 @@ void climb(const RatioFunction& ratio, Climber& c, double step, const AttackOpti
     for (std::size_t k = 0; k < around.size(); ++k) {
       around[k] = c.at;
       for (std::size_t axis = 0; axis < axes; ++axis) {
-        const double move =
-            k < 2 * axes ? (k / 2 == axis ? (k % 2 ? step : -step) : 0) : step * (2 * to_unit_double(u()) - 1);
+        const double move = k < 2 * axes ? (k / 2 == axis ? (k % 2 ? step : -step) : 0)
+                                         : step * (2 * to_unit_double(u()) - 1);
         around[k][axis] = std::clamp(c.at[axis] + move, 0., 1.);
       }
     }

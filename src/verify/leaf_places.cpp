@@ -8,8 +8,8 @@
 
 #include "elevations.hpp"
 #include "parallel.hpp"
-#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/known/incidence.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree {

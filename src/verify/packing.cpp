@@ -59,8 +59,8 @@ CheckResult check_albedo(const SamplerData& data, const PackedSampler& packed) {
         double rounding = 3e-7 * (std::abs(base) + std::abs(slope * double(c))) + 1e-7 * expected + 1e-37;
         if (!table.phi_o.empty()) rounding += 1e-5 * expected;
         worst.see(std::abs(looked_up(c) - expected), rounding,
-                  text("theta_o %.4f deg: %.8g for %.8g", std::acos(std::min(double(c), 1.)) * 180 / pi_v<double>,
-                       looked_up(c), expected));
+                  text("theta_o %.4f deg: %.8g for %.8g",
+                       std::acos(std::min(double(c), 1.)) * 180 / pi_v<double>, looked_up(c), expected));
       }
     }
   }
@@ -82,8 +82,8 @@ void check_borders(const char* mode, const Partition& partition, const PackedFor
         const float theta = linear_mix(x, boxes[s].lo[0], boxes[s].hi[0]);
         const float phi = linear_mix(y, boxes[s].lo[1], boxes[s].hi[1]);
         const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), phi);
-        worst.must(found == s, std::string(mode) + text(", theta_o %.6g, phi_o %.6g: another slab", double(theta),
-                                                        double(phi)));
+        worst.must(found == s, std::string(mode) + text(", theta_o %.6g, phi_o %.6g: another slab",
+                                                        double(theta), double(phi)));
       }
     }
   }

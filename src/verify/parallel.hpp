@@ -2,8 +2,8 @@
 #pragma once
 
 #include "reflectree/error.hpp"
-#include "reflectree/math/random.hpp"
 #include "reflectree/host.hpp"
+#include "reflectree/math/random.hpp"
 
 namespace reflectree::detail {
 

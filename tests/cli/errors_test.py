@@ -69,7 +69,6 @@ class Errors(ProgramTest):
         self.assert_error("expected a number", "info", "lambert:rho=nan")
         self.assert_error("weight out of range", "info", "1e30*lambert")
         self.assert_error("expected a model or a file", "list", "0.3*")
-        self.assert_error("anisotropic", "info", "ward:alpha_x=.1,alpha_y=.3")
 
     def test_files(self):
         self.assert_error("missing.bsdf: no such file", "info", "missing.bsdf")

@@ -101,7 +101,7 @@ class Eval(ProgramTest):
         head, *lines = done.stdout.decode().splitlines()
         self.assertEqual(head.split(",")[-1], "f_cos_b", "no densities")
         x, y = (list(map(float, line.split(",")))[6] for line in lines)
-        self.assertLess(x, y)  # an anisotropic function, for which no sampler could be built
+        self.assertLess(x, y)  # of an anisotropic function
 
     def test_samplers_and_files(self):
         self.run_program("build", "ggx:alpha=0.3", "-o", "g.rfl")

@@ -73,7 +73,8 @@ TEST(CellBorders, AnAzimuthIsASpokeFromThePole) {
   for (const Point& p : points_of(borders(along_x, disk_half, viewer_at(0.5f)))) EXPECT_NEAR(p.x, 200, 0.11);
   // Of half vectors: from the mirror direction, across the plane of incidence, to the rim.
   const Direction wo = viewer_at(0.9f);
-  const std::vector<Point> spoke = points_of(borders(along_x, {DomainKind::half_vector, Symmetry::mirror, 0}, wo));
+  const std::vector<Point> spoke =
+      points_of(borders(along_x, {DomainKind::half_vector, Symmetry::mirror, 0}, wo));
   ASSERT_FALSE(spoke.empty());
   EXPECT_NEAR(spoke.front().x, 200 - 100 * double(wo.x), 0.2);
   EXPECT_NEAR(spoke.front().y, 200, 0.2);

@@ -54,9 +54,10 @@ TEST_P(TreeImages, BoundsLieAboveTheTargetAndHoldTheVolume) {
   const AnyBrdf f = Ggx{0.4f, {1.f, 0.8f, 0.3f}};
   const bool stretched = GetParam() == DomainKind::stretched;
   const SamplerData data =
-      toy_sampler(
-      f, {GetParam(), GetParam() != DomainKind::equal_area ? Symmetry::mirror : Symmetry::none, stretched ? 1.2f : 0.f},
-      8);
+      toy_sampler(f,
+                  {GetParam(), GetParam() != DomainKind::equal_area ? Symmetry::mirror : Symmetry::none,
+                   stretched ? 1.2f : 0.f},
+                  8);
   const Direction wo = viewer_at(0.5f);
   const DiskImage target = target_image(f, {}, wo, 128), bound = bound_image(data, wo, 128);
   int below = 0, pixels = 0;
@@ -74,7 +75,8 @@ TEST_P(TreeImages, BoundsLieAboveTheTargetAndHoldTheVolume) {
 
 TEST_P(TreeImages, HalvedMassesAreSeenBelowTheTarget) {
   const AnyBrdf f = Ggx{0.4f, {1.f, 0.8f, 0.3f}};
-  SamplerData data = toy_sampler(f, {GetParam(), Symmetry::mirror, GetParam() == DomainKind::stretched ? 1.2f : 0.f}, 8);
+  SamplerData data =
+      toy_sampler(f, {GetParam(), Symmetry::mirror, GetParam() == DomainKind::stretched ? 1.2f : 0.f}, 8);
   data.exact[0].volume *= 0.5f;
   const Direction wo = viewer_at(0.5f);
   const DiskImage target = target_image(f, {}, wo, 128), bound = bound_image(data, wo, 128);

@@ -113,7 +113,8 @@ TEST(Figures, AreWellFormedAndTheSameEveryTime) {
   const AnyBrdf f = Ggx{0.2f, {1.f, 0.8f, 0.3f}};
   for (const DomainKind kind :
        {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector}) {
-    const SamplerData data = toy_sampler(f, {kind, kind != DomainKind::equal_area ? Symmetry::mirror : Symmetry::none, 0});
+    const SamplerData data =
+        toy_sampler(f, {kind, kind != DomainKind::equal_area ? Symmetry::mirror : Symmetry::none, 0});
     const std::vector<Direction> samples = cosine_directions(500);
     const auto all = [&](float theta_o) {
       const Direction wo = viewer_at(theta_o);

@@ -11,7 +11,8 @@ static_assert(DensitySampler<ExactSampler<Lambda>> && DensitySampler<OneShotSamp
 template class ExactSampler<Lambda>;
 template class OneShotSampler<Lambda>;
 
-float draw(const ExactSampler<Lambda>& exact, const OneShotSampler<Lambda>& one_shot, Direction wo, Pcg32& random) {
+float draw(const ExactSampler<Lambda>& exact, const OneShotSampler<Lambda>& one_shot, Direction wo,
+           Pcg32& random) {
   SampleStatistics statistics;
   const auto a = exact.sample(wo, random, statistics);
   const auto b = exact.sample_once(wo, random);

@@ -39,11 +39,14 @@ double worst_ratio(float lo, float hi, const F& f, const Right& right) {
 }
 
 TEST(FastFunctions, PointsOfTheCircle) {
-  EXPECT_LT(worst_point(-1, 1, [](float t) { return cos_sin_quarter(t); }, [](double t) { return pi_d / 4 * t; }),
+  EXPECT_LT(worst_point(
+                -1, 1, [](float t) { return cos_sin_quarter(t); }, [](double t) { return pi_d / 4 * t; }),
             1.2e-7);
-  EXPECT_LT(worst_point(-1, 1, [](float t) { return cos_sin_half(t); }, [](double t) { return pi_d / 2 * t; }),
+  EXPECT_LT(worst_point(
+                -1, 1, [](float t) { return cos_sin_half(t); }, [](double t) { return pi_d / 2 * t; }),
             1.2e-7);
-  EXPECT_LT(worst_point(0, 1, [](float t) { return on_circle(t); }, [](double t) { return 2 * pi_d * t; }),
+  EXPECT_LT(worst_point(
+                0, 1, [](float t) { return on_circle(t); }, [](double t) { return 2 * pi_d * t; }),
             1.2e-7);
 }
 
@@ -56,9 +59,10 @@ TEST(FastFunctions, QuartersAreExact) {
 }
 
 TEST(FastFunctions, ArcTangents) {
-  EXPECT_LT(worst_ratio(-1, 1, [](float t) { return quarter_atan(t); },
-                        [](double t) { return 4 / pi_d * std::atan(t); }),
-            2e-7);
+  EXPECT_LT(
+      worst_ratio(
+          -1, 1, [](float t) { return quarter_atan(t); }, [](double t) { return 4 / pi_d * std::atan(t); }),
+      2e-7);
   // Around the circle, at several radii.
   double first = 0, full = 0, polar = 0;
   for (const float radius : {1e-12f, 1e-3f, 1.f, 1e6f}) {
@@ -81,7 +85,8 @@ TEST(FastFunctions, ArcTangents) {
 }
 
 TEST(FastFunctions, Exponential) {
-  EXPECT_LT(worst_ratio(-87, 0, [](float x) { return exp_of_negative(x); }, [](double x) { return std::exp(x); }),
+  EXPECT_LT(worst_ratio(
+                -87, 0, [](float x) { return exp_of_negative(x); }, [](double x) { return std::exp(x); }),
             1.5e-7);
   constexpr float infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(exp_of_negative(0), 1);

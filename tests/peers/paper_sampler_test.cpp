@@ -134,7 +134,7 @@ TEST(PaperSampler, DrawsManyAtOnceWithoutAllocating) {
     EXPECT_EQ(allocations(), before);
     EXPECT_EQ(filled, 20'000U);
     EXPECT_NEAR(sum / 20'000, reference_albedo(target_function(f), wo).value, 2e-3 * sum / 20'000);
-    EXPECT_NEAR(y / 20'000, 0, 0.01);           // turned with wo
+    EXPECT_NEAR(y / 20'000, 0, 0.01);       // turned with wo
     EXPECT_GT(std::abs(x / 20'000), 0.03);  // the twin: the lobe seen from the side
     std::vector<PaperTree> trees = sampler.trees();
     for (PaperTree& tree : trees) tree.nodes[0].integral *= 1.01;  // the twin: a wrong normaliser

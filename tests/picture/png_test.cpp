@@ -13,7 +13,8 @@ TEST(Png, LibpngReadsBackEveryPixel) {
   std::vector<std::uint8_t> indices(31 * 17);
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = std::uint8_t(i * 7 % 256);
   std::vector<Rgb8> palette;
-  for (int i = 0; i < 255; ++i) palette.push_back({std::uint8_t(i), std::uint8_t(255 - i), std::uint8_t(i / 2)});
+  for (int i = 0; i < 255; ++i)
+    palette.push_back({std::uint8_t(i), std::uint8_t(255 - i), std::uint8_t(i / 2)});
   const Bytes bytes = encode_indexed_png(31, 17, indices, palette);
   png_image reader{};
   reader.version = PNG_IMAGE_VERSION;

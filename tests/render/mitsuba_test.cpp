@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "reflectree/error.hpp"
-#include "reflectree/render/film/film.hpp"
 #include "reflectree/picture/image_compare.hpp"
+#include "reflectree/render/film/film.hpp"
 
 namespace reflectree::render {
 namespace {

@@ -143,19 +143,23 @@ TEST(Frames, LanesAreTurnedBackAsOneByOne) {
   }
 }
 
-TEST(Frames, WhatDependsOnTheAzimuthIsRefused) {
+// A lobe of azimuths and a faint wave, which the mean over pairs hardly shows, are seen and kept.
+TEST(Frames, WhatDependsOnTheAzimuthIsFound) {
   const auto bright = [](Direction, Direction i) {
-    return 0.2f * (std::abs(std::atan2(i.y, i.x) - 1) < 0.05f ? 1.3f : 1.f);
+    const float away = std::remainder(std::atan2(i.y, i.x) - 1, 6.2831853f);
+    return 0.2f * (1 + 0.3f * std::exp(-sqr(away / 0.2f)));
   };
   const auto wave = [](Direction, Direction i) {
     return 0.2f * (1 + 0.015f * std::cos(2 * std::atan2(i.y, i.x)));
   };
-  EXPECT_TRUE(has(refusal(bright), "it is anisotropic")) << refusal(bright);
-  EXPECT_TRUE(has(refusal(bright), "to 0.26") || has(refusal(bright), "from 0.26")) << refusal(bright);
-  EXPECT_TRUE(has(refusal(wave), "it is anisotropic"));
+  BuildOptions options;
+  options.expected_trials = 1.5f, options.one_shot_variance = 0.05f, options.albedo_error = 1e-3f;
+  EXPECT_FALSE(build(AnyBrdf(bright), options).frame.isotropic());
+  EXPECT_EQ(build(AnyBrdf(wave), options).frame.symmetry, ViewerSymmetry::two_planes);
   EXPECT_EQ(refusal(AlmostIsotropic{}), "");
   // Steps that rounding may cross are no anisotropy.
-  EXPECT_EQ(refusal([](Direction o, Direction i) { return int(20 * dot(o, i)) % 2 ? 0.3f : 0.2f; }), "");
+  const auto steps = [](Direction o, Direction i) { return int(20 * dot(o, i)) % 2 ? 0.3f : 0.2f; };
+  EXPECT_TRUE(build(AnyBrdf(steps)).frame.isotropic());
 }
 
 TEST(Scale, SquaresMayLeaveTheRangeOfFloat) {

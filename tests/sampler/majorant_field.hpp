@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "reflectree/sampler/known/albedo.hpp"
-#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/verify/attack.hpp"
 
 namespace reflectree {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/brdf/models/lambert.hpp"
 #include "reflectree/brdf/models/retro_reflector.hpp"
-#include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/simd/sample_batch.hpp"
 #include "reflectree/verify/chi_square.hpp"

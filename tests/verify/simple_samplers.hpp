@@ -7,8 +7,8 @@
 
 #include "reflectree/brdf/models/lambert.hpp"
 #include "reflectree/brdf/models/low_smooth.hpp"
-#include "reflectree/math/square_maps.hpp"
 #include "reflectree/host.hpp"
+#include "reflectree/math/square_maps.hpp"
 #include "reflectree/verify/erased.hpp"
 
 namespace reflectree {

@@ -18,7 +18,8 @@ Example make_example() {
   const AnyBrdf f = make_brdf(
       parse_material("plastic:kd=0.1/0.02/0.015,f0=0.05,alpha=0.12 + 0.06*retro_reflector:alpha=0.15"));
   BuildOptions options;
-  options.domain = Domain{DomainKind::half_vector, Symmetry::mirror, 0};  // named: figures and text speak of its cells
+  options.domain =
+      Domain{DomainKind::half_vector, Symmetry::mirror, 0};  // named: figures and text speak of its cells
   return {f, build(f, options), draw::viewer_at(50 * pi / 180)};
 }
 

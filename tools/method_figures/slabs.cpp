@@ -95,7 +95,8 @@ Figure albedo_figure() {
     Domain domain;
     const char* css;
   };
-  const Domain disk{DomainKind::equal_area, Symmetry::mirror, 0}, half{DomainKind::half_vector, Symmetry::mirror, 0};
+  const Domain disk{DomainKind::equal_area, Symmetry::mirror, 0},
+      half{DomainKind::half_vector, Symmetry::mirror, 0};
   const std::array<Entry, 4> entries{{{"Lambert, *ρ* = 0.5", Lambert{}, disk, "curve"},
                                       {"Oren–Nayar", OrenNayar{}, disk, "curve-3"},
                                       {"gold-like GGX, *α* = 0.1", Ggx{0.1f}, half, "curve-2"},

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <iostream>
 
+#include "../threads.hpp"
 #include "promises.hpp"
 #include "reflectree/formats/file.hpp"
-#include "../threads.hpp"
 
 namespace {
 

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "reflectree/text/base64.hpp"
 #include "reflectree/draw/report.hpp"
 #include "reflectree/draw/svg.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/text/base64.hpp"
 
 namespace reflectree::pictures {
 

@@ -13,7 +13,8 @@ void add_ways(Page& page, const Results& results, const Plan& plan) {
       std::to_string(plan.directions) +
       " directions per pixel from the material, one or four for a camera sample; MIS adds a sample of a "
       "light for each, resampling draws eight candidates for each. Gains over plain of the same sampler: "
-      "variance at equal samples, efficiency, 1 / (variance × CPU time), and variance without the one pixel in a "
+      "variance at equal samples, efficiency, 1 / (variance × CPU time), and variance without the one pixel "
+      "in a "
       "thousand whose error is largest. Where a lamp is small, the few directions that hit it by chance are "
       "plain's variance: the first two are then as uncertain as their errors say, and the third is of "
       "pictures in which that lamp is missing.");

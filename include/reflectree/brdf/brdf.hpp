@@ -87,13 +87,13 @@ struct BrdfTraits {
   int channels = 3;
   bool isotropic = true;              // false: known to depend on more than phi_o - phi_i
   bool isotropic_by_formula = false;  // may be evaluated with both directions turned about the normal
-  // Of an anisotropic function: the azimuth of a plane in which both directions may be mirrored, radians. Only
-  // a hint; the builder verifies it, and looks for one itself.
+  // Of an anisotropic function: the azimuth of a plane in which both directions may be mirrored, radians.
+  // Only a hint; the builder verifies it, and looks for one itself.
   std::optional<float> axis = std::nullopt;
-  bool concurrent = true;             // false: called from one thread (a Python callback)
-  std::vector<float> theta_o_knots;   // radians: elevations where f has kinks in theta_o
-  std::vector<float> theta_d_knots;   // radians: difference angles where f has kinks; theta_o meets them at a
-                                      // mirror lobe, where the albedo inherits them
+  bool concurrent = true;            // false: called from one thread (a Python callback)
+  std::vector<float> theta_o_knots;  // radians: elevations where f has kinks in theta_o
+  std::vector<float> theta_d_knots;  // radians: difference angles where f has kinks; theta_o meets them at a
+                                     // mirror lobe, where the albedo inherits them
   // A factor of f that depends on theta_o (radians) alone, > 0; empty: none known. Albedo tables interpolate
   // what is left of the albedo without it, so that its kinks cost no integral.
   std::function<double(double)> theta_o_factor;

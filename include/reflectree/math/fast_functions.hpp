@@ -39,8 +39,8 @@ template <class T>
 REFLECTREE_INLINE Vec2<T> cos_sin_half(T t) {
   if constexpr (single_precision<T>) {
     const T h = T(0.5f) * t, s = h * h, s2 = s * s;  // Estrin's scheme: short chains
-    return {(T(1.f) - s * T(4.93480214f)) + s2 * ((T(4.05870916f) - s * T(1.33521206f)) +
-                                                  s2 * (T(0.234937559f) - s * T(0.0243967166f))),
+    return {(T(1.f) - s * T(4.93480214f)) +
+                s2 * ((T(4.05870916f) - s * T(1.33521206f)) + s2 * (T(0.234937559f) - s * T(0.0243967166f))),
             h * ((T(3.14159264f) - s * T(5.16771009f)) +
                  s2 * ((T(2.55007766f) - s * T(0.598292159f)) + s2 * T(0.0776594082f)))};
   } else {
@@ -63,7 +63,8 @@ T quarter_atan(T t) {
   }
 }
 
-// Whole quarters are taken off without rounding; what is left, |x| <= pi/4, enters polynomials with the coefficients of Moshier's Cephes, sinf.
+// Whole quarters are taken off without rounding; what is left, |x| <= pi/4, enters polynomials with the
+// coefficients of Moshier's Cephes, sinf.
 inline Vec2<float> on_circle(float turns) {
   const int quarters = int(4 * turns + .5f);
   const float x = 2 * pi * (turns - .25f * float(quarters)), x2 = x * x;

@@ -5,8 +5,8 @@
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/target.hpp"
-#include "reflectree/peers/lobe.hpp"
 #include "reflectree/host.hpp"
+#include "reflectree/peers/lobe.hpp"
 
 namespace reflectree {
 

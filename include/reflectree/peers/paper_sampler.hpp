@@ -14,10 +14,10 @@
 #include <memory>
 #include <span>
 
+#include "reflectree/host.hpp"
 #include "reflectree/math/uniform_bits.hpp"
 #include "reflectree/peers/paper_tree.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
-#include "reflectree/host.hpp"
 
 namespace reflectree {
 

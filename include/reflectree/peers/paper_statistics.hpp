@@ -5,8 +5,8 @@
 
 #include <span>
 
-#include "reflectree/peers/paper_tree.hpp"
 #include "reflectree/host.hpp"
+#include "reflectree/peers/paper_tree.hpp"
 
 namespace reflectree {
 

@@ -10,8 +10,8 @@
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/material/material.hpp"
-#include "reflectree/sampler/any_sampler.hpp"
 #include "reflectree/host.hpp"
+#include "reflectree/sampler/any_sampler.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
 
 namespace reflectree {

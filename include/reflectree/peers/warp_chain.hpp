@@ -9,8 +9,8 @@
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/target.hpp"
-#include "reflectree/peers/bilinear_table.hpp"
 #include "reflectree/host.hpp"
+#include "reflectree/peers/bilinear_table.hpp"
 
 namespace reflectree {
 

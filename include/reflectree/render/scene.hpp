@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "reflectree/host.hpp"
 #include "reflectree/render/lights/environment.hpp"
 #include "reflectree/render/materials/scattering.hpp"
-#include "reflectree/host.hpp"
 
 namespace reflectree::render {
 

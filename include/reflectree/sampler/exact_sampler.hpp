@@ -10,9 +10,9 @@
 
 #include "reflectree/brdf/brdf.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
-#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/known/incidence.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 #include "reflectree/sampler/statistics.hpp"
 
@@ -25,7 +25,8 @@ class ExactSampler {
   static constexpr int max_trials = 256;
 
   ExactSampler(F f, std::shared_ptr<const PackedSampler> packed)
-      : f_(std::move(f)), packed_(std::move(packed)), 
+      : f_(std::move(f)),
+        packed_(std::move(packed)),
         turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
 
   const F& brdf() const { return f_; }

@@ -10,9 +10,9 @@
 
 #include "reflectree/brdf/brdf.hpp"
 #include "reflectree/sampler/direction_sample.hpp"
-#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/known/incidence.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree {
@@ -29,7 +29,8 @@ class OneShotSampler {
   using Value = ValueOf<F>;
 
   OneShotSampler(F f, std::shared_ptr<const PackedSampler> packed)
-      : f_(std::move(f)), packed_(std::move(packed)), 
+      : f_(std::move(f)),
+        packed_(std::move(packed)),
         turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
 
   const F& brdf() const { return f_; }
@@ -126,8 +127,8 @@ class OneShotSampler {
     local = fold(packed_->domain.symmetry, local);
     const Vec2<float> p = lower(packed_->domain, in.wo, local);
     const DomainPoint point = lift(packed_->domain, in.wo, p);
-    return locate(packed_->one_shot.slab_at(in), p).density *
-           point.geometry.cos_theta_i / point.projected_area;
+    return locate(packed_->one_shot.slab_at(in), p).density * point.geometry.cos_theta_i /
+           point.projected_area;
   }
   // Per projected solid angle.
   float pdf_disk(Direction wo, Direction wi) const { return wi.z > 0 ? pdf(wo, wi) / wi.z : 0.f; }
@@ -135,8 +136,8 @@ class OneShotSampler {
  private:
   detail::Located locate(const PackedSlab& slab, Vec2<float> p) const {
     const PackedForest& forest = packed_->one_shot;
-    return detail::locate(forest.nodes.data() + slab.first_node, forest.leaves.data() + slab.first, slab.count,
-                          packed_->domain.symmetry, p);
+    return detail::locate(forest.nodes.data() + slab.first_node, forest.leaves.data() + slab.first,
+                          slab.count, packed_->domain.symmetry, p);
   }
 
   // make(domain, leaf, incidence), for a leaf chosen by alias table.

@@ -105,7 +105,8 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
         std::size_t n = 0;
         for (; i < wo.size() && n < side_by_side; ++i) {
           Started& s = started[n];
-          if (!detail::are_uniforms(points[i].x, points[i].y) || !find_incidence(packed.viewer, wo[i], s.in)) {
+          if (!detail::are_uniforms(points[i].x, points[i].y) ||
+              !find_incidence(packed.viewer, wo[i], s.in)) {
             detail::store_no_sample(values.zero(), out[i]);
             continue;
           }

@@ -2,8 +2,8 @@
 // A block of trials, field by field: chosen one by one, computed in lanes.
 #pragma once
 
-#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/known/incidence.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 #include "reflectree/simd/lanes.hpp"
 
@@ -115,7 +115,8 @@ REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Value
     if constexpr (across_x == AcrossX::uniform) tx = sample_linear(cell.slope_x, tx);
     const PointInLeafT<Lanes> at = point_at(cell, tx, sample_linear(cell.slope_y, lanes(Field::across_y)));
     const bool surface = domain.follows_surface();
-    const Vec3<Lanes> wo{lanes(Field::wo_x), surface ? lanes(Field::wo_y) : Lanes(0), lanes(Field::cos_theta_o)};
+    const Vec3<Lanes> wo{lanes(Field::wo_x), surface ? lanes(Field::wo_y) : Lanes(0),
+                         lanes(Field::cos_theta_o)};
     const DomainPointT<Lanes> point =
         lift_point(domain, wo, Vec2<Lanes>{at.p.x, flip_sign(at.p.y, lanes(Field::turn))});
     const Vec3<Lanes>& wi = point.geometry.wi;

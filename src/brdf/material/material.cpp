@@ -34,12 +34,12 @@ std::string value_text(Rgb value) {
 std::string term_text(const MaterialTerm& term) {
   const std::string text = term.weight == 1 ? "" : shortest_text(term.weight) + "*";
   if (term.model.empty()) return text + file_text(term.path, term.member);
-  std::vector<std::string_view> names;
+  std::vector<NamedValue> values;
   if (const ModelInfo* model = find_model(term.model)) {
-    for (const ParameterInfo& p : model->parameters) names.push_back(p.name);
+    for (std::size_t i = 0; i < std::min(model->parameters.size(), term.values.size()); ++i)
+      values.push_back({model->parameters[i].name, term.values[i], model->parameters[i].quiet});
   }
-  return text + model_text(term.model, names,
-                           std::span(term.values).first(std::min(names.size(), term.values.size())));
+  return text + model_text(term.model, values);
 }
 
 AnyBrdf make_term(const MaterialTerm& term, const FileLoader& load_file) {
@@ -66,15 +66,16 @@ AnyBrdf make_term(const MaterialTerm& term, const FileLoader& load_file) {
 
 }  // namespace
 
-std::string model_text(std::string_view model, std::span<const std::string_view> names,
-                       std::span<const Rgb> values) {
+std::string model_text(std::string_view model, std::span<const NamedValue> values) {
   std::string text(model);
   char separator = ':';
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string_view name = names[i];
-    const bool pair = i + 1 < names.size() && is_pair(name, names[i + 1]) && values[i] == values[i + 1];
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i].quiet && values[i].value == Rgb{}) continue;
+    std::string_view name = values[i].name;
+    const bool pair =
+        i + 1 < values.size() && is_pair(name, values[i + 1].name) && values[i].value == values[i + 1].value;
     if (pair) name.remove_suffix(2);
-    text += separator + std::string(name) + "=" + value_text(values[i]);
+    text += separator + std::string(name) + "=" + value_text(values[i].value);
     separator = ',';
     if (pair) ++i;
   }

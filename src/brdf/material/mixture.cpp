@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "reflectree/text/number_text.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree {
 namespace {

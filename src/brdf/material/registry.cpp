@@ -16,7 +16,8 @@ ModelInfo entry() {
   ModelInfo info{
       description.name, description.model_class, description.summary, description.source, {}, {}, {}};
   for (const auto& p : description.parameters) {
-    info.parameters.push_back({p.name, p.is_rgb() ? 3 : 1, p.lo, p.hi, p.get(M{}), p.unit, p.meaning});
+    info.parameters.push_back(
+        {p.name, p.is_rgb() ? 3 : 1, p.lo, p.hi, p.get(M{}), p.unit, p.meaning, p.is_quiet()});
   }
   info.fault = [](std::span<const Rgb> values) -> const char* {
     if constexpr (requires(const M& m) { m.fault(); }) return model_from_values<M>(values).fault();

@@ -16,12 +16,12 @@ struct Between {
   int low, high;
   float fraction;
 };
-Between clamped_between(float x, int size) {
+REFLECTREE_INLINE Between clamped_between(float x, int size) {
   const float y = min(max(0.f, x - 0.5f), float(size - 1));
   const int low = std::min(int(y), size - 1);
   return {low, std::min(low + 1, size - 1), y - float(low)};
 }
-Between wrapped_between(float x, int size) {
+REFLECTREE_INLINE Between wrapped_between(float x, int size) {
   const float y = min(max(0.f, x < 0.5f ? x - 0.5f + float(size) : x - 0.5f), float(size));
   const int low = std::min(int(y), size - 1);
   return {low, low + 1 == size ? 0 : low + 1, y - float(low)};
@@ -31,7 +31,7 @@ Between wrapped_between(float x, int size) {
 struct Position {
   float h, d, p;
 };
-Position position(const HalfAngleTable& table, const ShadingGeometry<float>& g) {
+REFLECTREE_INLINE Position position(const HalfAngleTable& table, const ShadingGeometry<float>& g) {
   const auto [sin_h, difference] = detail::difference_vector(g);
   const float theta_h = first_quadrant_angle(sin_h, max(g.cos_theta_h, 0.f));
   const float theta_d = polar_angle(sin2_theta(difference), g.cos_theta_d);
@@ -41,7 +41,7 @@ Position position(const HalfAngleTable& table, const ShadingGeometry<float>& g) 
           float(table.n_p) * (phi_d < 0 ? phi_d + period : phi_d) / period};
 }
 
-const float* cell(const HalfAngleTable& table, int h, int d, int p) {
+REFLECTREE_INLINE const float* cell(const HalfAngleTable& table, int h, int d, int p) {
   return table.rgb.data() +
          ((std::size_t(h) * std::size_t(table.n_d) + std::size_t(d)) * std::size_t(table.n_p) +
           std::size_t(p)) *
@@ -57,7 +57,7 @@ const float* nearest_cell(const HalfAngleTable& table, const Position& at) {
 struct Corners {
   Between h, d, p;
 };
-Corners corners(const HalfAngleTable& table, const Position& at) {
+REFLECTREE_INLINE Corners corners(const HalfAngleTable& table, const Position& at) {
   return {clamped_between(at.h, table.n_h), clamped_between(at.d, table.n_d),
           wrapped_between(at.p, table.n_p)};
 }
@@ -86,6 +86,16 @@ Measured measured(const HalfAngleTable& table, const Corners& at, int channel) {
   return m;
 }
 
+// The measured corners alone, where one is missing.
+Rgb bridged(const HalfAngleTable& table, const Corners& c, Rgb sum) {
+  const auto mean = [&](int k) {
+    const Measured m = measured(table, c, k);
+    if (!(m.missing > 0)) return channel_value(sum, k);
+    return m.weight > 0 ? m.sum / m.weight : 0;
+  };
+  return {mean(0), mean(1), mean(2)};
+}
+
 }  // namespace
 
 Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
@@ -109,13 +119,7 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
   add(c.h.low, c.d.high, (1 - c.h.fraction) * c.d.fraction);
   add(c.h.high, c.d.low, c.h.fraction * (1 - c.d.fraction));
   add(c.h.high, c.d.high, c.h.fraction * c.d.fraction);
-  if (bits >> 31U == 0) return sum;
-  const auto mean = [&](int k) {
-    const Measured m = measured(*this, c, k);
-    if (!(m.missing > 0)) return channel_value(sum, k);
-    return m.weight > 0 ? m.sum / m.weight : 0;
-  };
-  return {mean(0), mean(1), mean(2)};
+  return bits >> 31U == 0 ? sum : bridged(*this, c, sum);
 }
 
 Rgb HalfAngleTable::unmeasured(const ShadingGeometry<float>& g) const {

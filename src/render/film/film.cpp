@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
+#include "materials/visible_slope.hpp"
 #include "reading/fnv.hpp"
 #include "reflectree/error.hpp"
-#include "materials/visible_slope.hpp"
 
 namespace reflectree::render {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "materials/cosine_lobe.hpp"
-#include "shapes/flat.hpp"
 #include "reflectree/render/integrators/profile.hpp"
+#include "shapes/flat.hpp"
 
 namespace reflectree::render {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/error.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/math/prefetch.hpp"
 
 namespace reflectree::render {

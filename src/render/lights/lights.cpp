@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "shapes/flat.hpp"
 #include "reflectree/math/fast_functions.hpp"
 #include "reflectree/render/integrators/profile.hpp"
+#include "shapes/flat.hpp"
 
 namespace reflectree::render {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "xml_shapes.hpp"
 
-#include "shapes/flat.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/render/shapes/mesh_files.hpp"
+#include "shapes/flat.hpp"
 
 namespace reflectree::render {
 

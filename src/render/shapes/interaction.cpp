@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "flat.hpp"
-#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/brdf/shading_geometry.hpp"
+#include "reflectree/math/fast_functions.hpp"
 #include "reflectree/render/shapes/embree_scene.hpp"
 
 namespace reflectree::render {

@@ -2,6 +2,7 @@
 #include "albedo_azimuth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace reflectree::detail {
 namespace {
 
 constexpr std::size_t most_rows = 65, most_table_rows = 257;
+constexpr double thinned = 0.15;  // of the error, by which lines over the cosine may miss what was integrated
 
 // Values at equidistant azimuths from 0 to the span, both ends included, as a trigonometric series: where
 // mirroring leaves the function alone at both ends, of cosines; else periodic.
@@ -99,14 +101,14 @@ void thin_out(std::vector<float>& columns, Values& values, double error) {
     kept.push_back(reach);
     i = reach + 1;
   }
-  std::vector<float> thinned;
-  for (const std::size_t i : kept) thinned.push_back(columns[i]);
+  std::vector<float> left_columns;
+  for (const std::size_t i : kept) left_columns.push_back(columns[i]);
   for (auto& row : values) {
     std::vector<double> left;
     for (const std::size_t i : kept) left.push_back(row[i]);
     row = std::move(left);
   }
-  columns = std::move(thinned);
+  columns = std::move(left_columns);
 }
 
 }  // namespace
@@ -115,13 +117,15 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
                                 const std::function<AlbedoTable(float phi_o, bool checked)>& row_at,
                                 const std::function<bool()>& spent) {
   const float span = azimuth_span(symmetry);
-  const bool even = symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::one_plane;
+  const bool even = is_mirrored(symmetry);
   const double error = double(relative_error);
   std::vector<AlbedoTable> rows;
   for (std::size_t k = 0; k < 5; ++k) rows.push_back(row_at(span * (float(k) / 4), true));
   std::vector<float> columns;
   Values values;
-  double missed = 1;  // by the series through every second row, at the rows between
+  // By the series through every second row, at the rows between; and, as it shrinks, what the series through
+  // all rows will miss.
+  double missed = 1, remaining = 1;
   for (;;) {
     columns = all_columns(rows);
     values.clear();
@@ -129,6 +133,7 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
       values.emplace_back();
       for (const float c : columns) values.back().push_back(double(albedo_at(row, c)));
     }
+    const double before = missed;
     missed = 0;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const std::vector<double> all = column_of(values, i);
@@ -140,35 +145,40 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
         missed = std::max(missed, relative(foretold, all[k]) / allowance(columns[i]));
       }
     }
-    // The series through all rows misses far less than the one through half of them; a tenth is believed.
-    if (missed <= error || rows.size() >= most_rows || spent()) break;
+    remaining = missed * std::min(1., missed / before);
+    if ((remaining <= 0.3 * error && missed <= 5 * error) || rows.size() >= most_rows || spent()) break;
     std::vector<AlbedoTable> finer;
     const std::size_t count = 2 * rows.size() - 1;
     for (std::size_t k = 0; k < count; ++k) {
-      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2]) : row_at(span * (float(k) / float(count - 1)), false));
+      finer.push_back(k % 2 == 0 ? std::move(rows[k / 2])
+                                 : row_at(span * (float(k) / float(count - 1)), false));
     }
     rows = std::move(finer);
   }
 
   AlbedoTable table;
-  for (const AlbedoTable& row : rows) table.relative_error = std::max(table.relative_error, row.relative_error);
-  thin_out(columns, values, 0.12 * error);
+  for (const AlbedoTable& row : rows)
+    table.relative_error = std::max(table.relative_error, row.relative_error);
+  thin_out(columns, values, thinned * error);
   // As many rows as lines need. Where the series has not settled, the rows themselves are what is known.
-  const bool settled = missed <= 4 * error;
+  const bool settled = missed <= 10 * error;
   std::vector<Series> series;
   for (std::size_t i = 0; settled && i < columns.size(); ++i) series.emplace_back(column_of(values, i), even);
   std::size_t count = rows.size();
-  double bent = 0;  // by lines between the rows
+  double bent = 0;  // by the cubics between the rows of the table
   for (; settled; count = 2 * count - 1) {
     bent = 0;
+    const double n = double(count - 1);
+    const std::array<float, 4> weights = cubic_weights(0.5f);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       for (std::size_t k = 0; k + 1 < count; ++k) {
-        const double n = double(count - 1), a = series[i].at(double(k) / n), b = series[i].at(double(k + 1) / n);
-        const double middle = series[i].at((double(k) + 0.5) / n);
-        bent = std::max(bent, relative(0.5 * (a + b), middle) / allowance(columns[i]));
+        double cubic = 0;
+        for (std::size_t m = 0; m < 4; ++m)
+          cubic += double(weights[m]) * series[i].at((double(k) + double(m) - 1) / n);
+        bent = std::max(bent, relative(cubic, series[i].at((double(k) + 0.5) / n)) / allowance(columns[i]));
       }
     }
-    if (bent <= 0.25 * error || count >= most_table_rows) break;
+    if (bent <= 0.2 * error || count >= most_table_rows) break;
   }
   table.cos_theta_o = columns;
   for (std::size_t k = 0; k < count; ++k) {
@@ -178,8 +188,9 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
       table.albedo.push_back(float(std::max(a, 0.)));
     }
   }
+  table.even = even;
   if (!settled) bent = missed;
-  const double stated = double(table.relative_error) + 0.12 * error + bent + (settled ? 0.1 * missed : 0);
+  const double stated = double(table.relative_error) + thinned * error + bent + (settled ? remaining : 0);
   table.relative_error = float(std::min(std::max(stated, error), 1.));
   return table;
 }

@@ -9,10 +9,10 @@
 
 namespace reflectree::detail {
 
-// row_at(phi_o, checked): the table at one azimuth of the viewer, to half of the error asked for; `checked`
-// by other integrals: later rows are checked by what the earlier ones foretell. Rows are computed at
-// twice as many azimuths until the series through those there were foretell the new ones, or the effort is
-// spent; the table holds as many rows, read off the series, as straight lines between them need.
+// row_at(phi_o, checked): the table at one azimuth of the viewer, to a third of the error asked for;
+// `checked` by other integrals: later rows are checked by what the earlier ones foretell. Rows are computed
+// at twice as many azimuths until the series through those there were foretell the new ones, or the effort is
+// spent; the table holds as many rows, read off the series, as cubics between them need.
 AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
                                 const std::function<AlbedoTable(float phi_o, bool checked)>& row_at,
                                 const std::function<bool()>& spent);

@@ -30,7 +30,7 @@ class TableBuilder {
         budget_(budget),
         apart_{0, effort.limit},
         rim_(!field.frame.isotropic()) {
-    if (!field.frame.isotropic()) cells_x_ = 16, cells_y_ = 8;
+    if (!field.frame.isotropic()) cells_x_ = 12, cells_y_ = 6;
     std::vector<double> borders = first_borders(field.f.traits());
     for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
     std::sort(borders.begin(), borders.end());
@@ -65,7 +65,7 @@ class TableBuilder {
         }
       }
       std::vector<double> misses =
-          misses_at(now, cosines, {cubature_error(), 7, 5, true, progress, progress, phi_o_});
+          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress, phi_o_});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
@@ -200,9 +200,9 @@ class TableBuilder {
   void integrate_nodes(const std::vector<double>& thetas) {
     std::vector<float> cosines;
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
-    const Integrals a =
-        integrate(field_, cosines, {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, phi_o_},
-                                  host_, effort_);
+    const Integrals a = integrate(
+        field_, cosines, {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, phi_o_}, host_,
+        effort_);
     for (std::size_t i = 0; i < thetas.size(); ++i) nodes_[thetas[i]] = a.values[i] / factor(thetas[i]);
     worst_ = max(worst_, a.error);
   }
@@ -237,7 +237,7 @@ class TableBuilder {
   double error_;
   const Factor known_;
   std::uint64_t start_, budget_;
-  Effort apart_;      // of the checks: evaluations count what the sampler is made of
+  Effort apart_;  // of the checks: evaluations count what the sampler is made of
   // Lobes that lie askew hide better: anisotropic functions begin with more cells.
   int cells_x_ = 8, cells_y_ = 4;
   bool rim_;  // close in on the rim: the first integrals were found wrong, or rows must agree
@@ -252,7 +252,8 @@ namespace {
 
 // The table at one azimuth of the viewer.
 AlbedoTable build_row(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
-                      std::uint64_t seed, const Host& host, Effort& effort, std::uint64_t budget, bool checked) {
+                      std::uint64_t seed, const Host& host, Effort& effort, std::uint64_t budget,
+                      bool checked) {
   TableBuilder builder(field, phi_o, relative_error, jumps, host, effort, budget);
   builder.refine();
   if (checked) builder.check(seed);
@@ -264,10 +265,11 @@ AlbedoTable build_row(const Field& field, float phi_o, float relative_error, con
 AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
                          std::uint64_t seed, const Host& host, Effort& effort) {
   const std::uint64_t budget = effort.limit / 3;
-  if (field.frame.isotropic()) return build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
+  if (field.frame.isotropic())
+    return build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
   const std::uint64_t start = effort.evaluations;
   const auto row_at = [&](float phi_o, bool checked) {
-    return build_row(field, phi_o, 0.5f * relative_error, jumps, seed, host, effort, budget / 8, checked);
+    return build_row(field, phi_o, 0.35f * relative_error, jumps, seed, host, effort, budget / 8, checked);
   };
   const auto spent = [&] { return effort.evaluations - start > budget; };
   return albedo_over_azimuth(field.frame.symmetry, relative_error, row_at, spent);

@@ -22,8 +22,8 @@ void apply_rule(Region& r, const FieldValue* v, double area) {
   const double share = 4 * r.hx * r.hy / area;
   r.value = share * sums.degree7;
   r.error = share * std::abs(sums.degree7 - sums.degree5);
-  r.split_x = sums.difference_x > sums.difference_y ||
-              (sums.difference_x == sums.difference_y && r.hx >= r.hy);
+  r.split_x =
+      sums.difference_x > sums.difference_y || (sums.difference_x == sums.difference_y && r.hx >= r.hy);
 }
 
 // One integral, advanced in rounds: the regions that carry most of the error are halved.

@@ -26,8 +26,8 @@ namespace {
 
 // Appends the entries of the panel after `lo`, halving until lines in the cosine miss the polynomial times
 // the factor by at most `error`, relatively.
-void tabulate_part(const Panel& panel, const std::array<double, 5>& v, const Factor& factor, double t0, double t1,
-              double error, int depth, std::map<float, double>& table) {
+void tabulate_part(const Panel& panel, const std::array<double, 5>& v, const Factor& factor, double t0,
+                   double t1, double error, int depth, std::map<float, double>& table) {
   const auto theta_at = [&](double t) { return panel.lo + 0.25 * t * (panel.hi - panel.lo); };
   const auto cosine_at = [&](double t) { return std::cos(theta_at(t)); };
   const auto albedo = [&](double t) { return interpolate(v, 1, t) * factor(theta_at(t)); };

@@ -14,8 +14,8 @@
 #include "findings.hpp"
 #include "passes.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/known/albedo.hpp"
 #include "reflectree/sampler/identity.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
 #include "theta_jumps.hpp"
 
 namespace reflectree {
@@ -106,8 +106,8 @@ void refuse_unfit_domain(const AlbedoTable& albedo, const Field& fit, const Host
 void check_domain(const Domain& domain, const ViewerFrame& frame, const std::string& name) {
   const std::string kind = name_of(domain.kind);
   if (frame.isotropic() && domain.kind == DomainKind::slope_star) {
-    throw Error("the domain " + kind + " is one of anisotropic functions, and the function is isotropic", name,
-                "ask for half_vector, or leave the domain to the builder");
+    throw Error("the domain " + kind + " is one of anisotropic functions, and the function is isotropic",
+                name, "ask for half_vector, or leave the domain to the builder");
   }
 }
 

@@ -75,7 +75,7 @@ std::vector<KnownBox> trial_boxes(const ViewerFrame& frame) {
 std::vector<Domain> candidates(const Examination& seen) {
   if (seen.frame.isotropic()) {
     const Symmetry symmetry = seen.asymmetry <= half_square_up_to ? Symmetry::mirror : Symmetry::none;
-    return {{DomainKind::half_vector, symmetry, 0},   {DomainKind::equal_area, symmetry, 0},
+    return {{DomainKind::half_vector, symmetry, 0},    {DomainKind::equal_area, symmetry, 0},
             {DomainKind::projected_disk, symmetry, 0}, {DomainKind::back_vector, symmetry, 0},
             {DomainKind::stretched, symmetry, 1.5f},   {DomainKind::mirror_vector, symmetry, 0},
             {DomainKind::normal_vector, symmetry, 0}};
@@ -87,8 +87,9 @@ std::vector<Domain> candidates(const Examination& seen) {
     if (list.empty() || stretch < 0.9f * list.back().stretch)
       list.push_back({DomainKind::slope_star, Symmetry::none, 0, stretch});
   }
-  for (const DomainKind kind : {DomainKind::half_vector, DomainKind::equal_area, DomainKind::projected_disk,
-                                DomainKind::back_vector, DomainKind::mirror_vector, DomainKind::normal_vector}) {
+  for (const DomainKind kind :
+       {DomainKind::half_vector, DomainKind::equal_area, DomainKind::projected_disk, DomainKind::back_vector,
+        DomainKind::mirror_vector, DomainKind::normal_vector}) {
     list.push_back({kind, Symmetry::none, 0});
   }
   list.push_back({DomainKind::stretched, Symmetry::none, 1.5f});
@@ -105,7 +106,9 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
   GrowthRules rules{goal, 1, 2000, false, true, analyse_exact, 1e30f};
   const std::vector<KnownBox> boxes = trial_boxes(seen.frame);
   if (!seen.frame.isotropic()) {
-    flat.phi_o = {0, azimuth_span(seen.frame.symmetry)}, flat.albedo = {1, 1, 1, 1};
+    const float span = azimuth_span(seen.frame.symmetry);
+    flat.phi_o = {0, 0.5f * span, span}, flat.albedo = {1, 1, 1, 1, 1, 1};
+    flat.even = is_mirrored(seen.frame.symmetry);
   }
   Domain best;
   std::vector<Slab> best_slabs;
@@ -142,6 +145,8 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
       least = price, best = domain, best_mass = mass, best_slabs = std::move(slabs);
     // A domain that needs in one slab twice as many leaves as the best in all cannot win.
     rules.max_leaves = std::size_t(clamp(2 * least, 32.f, 2000.f));
+    if (!seen.frame.isotropic())  // of many boxes: one that needs so many more than they do on average
+      rules.max_leaves = std::size_t(clamp(6 * least / float(boxes.size()), 32.f, 2000.f));
   }
   // Leaves grow as 1 / (what is left of the trials allowed): past half of them a whole square is cheaper.
   if (best.half() && !seen.mirror_symmetric) {

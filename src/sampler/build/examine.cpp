@@ -160,9 +160,9 @@ bool is_anisotropic(const AnyBrdf& f, const Values& values, const std::vector<Di
   Pcg32 u(seed, 12);
   std::vector<float> angle(wo.size());
   for (float& a : angle) a = 6.2831853f * to_unit_float(u());
-  return change_under(f, values, wo, wi, seed, [&](std::size_t k, Direction w) {
-           return turn(w, cos(angle[k]), sin(angle[k]));
-         }).has_value();
+  return change_under(f, values, wo, wi, seed,
+                      [&](std::size_t k, Direction w) { return turn(w, cos(angle[k]), sin(angle[k])); })
+      .has_value();
 }
 
 // How far, in slopes of the half vector and for the viewer at the normal, the lobe reaches at an azimuth:
@@ -239,7 +239,9 @@ ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<D
   const auto holds = [&](const auto& image) { return !change_under(f, values, wo, wi, seed, image); };
   const auto mirrors = [&](float axis) {
     const float c = cos(2 * axis), s = sin(2 * axis);
-    return holds([&](std::size_t, Direction w) { return Direction{c * w.x + s * w.y, s * w.x - c * w.y, w.z}; });
+    return holds([&](std::size_t, Direction w) {
+      return Direction{c * w.x + s * w.y, s * w.x - c * w.y, w.z};
+    });
   };
   const bool half_turn = holds([](std::size_t, Direction w) { return Direction{-w.x, -w.y, w.z}; });
   std::vector<float> guesses{0, 0.5f * pi, 0.25f * pi, 0.75f * pi};
@@ -248,7 +250,8 @@ ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<D
     if (!mirrors(guess)) continue;
     // Of both planes of a half turn the one along the lobe is the axis.
     const bool across = half_turn && abs(cos(guess - lobe.axis)) < 0.7f;
-    return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane, across ? guess + 0.5f * pi : guess};
+    return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane,
+            across ? guess + 0.5f * pi : guess};
   }
   const float refined = nearest_plane(f, values, wo, wi, lobe.axis);
   if (mirrors(refined)) return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane, refined};

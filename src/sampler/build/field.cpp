@@ -36,8 +36,13 @@ ShadingGeometry<float> geometry_for_caller(const Field& field, const FieldPoint&
                                            const ShadingGeometry<float>& g) {
   const Turn t = turn_of(field, point.wo);
   const auto turned = [&](Direction w) { return field.to_caller(turn(w, t.cosine, t.sine)); };
-  return {field.to_caller(point.wo), turned(g.wi),  turned(g.wh), g.cos_theta_o,
-          g.cos_theta_i,             g.cos_theta_h, g.cos_theta_d};
+  return {field.to_caller(point.wo),
+          turned(g.wi),
+          turned(g.wh),
+          g.cos_theta_o,
+          g.cos_theta_i,
+          g.cos_theta_h,
+          g.cos_theta_d};
 }
 
 }  // namespace

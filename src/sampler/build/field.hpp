@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "known_box.hpp"
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/target.hpp"
-#include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
-#include "known_box.hpp"
+#include "reflectree/sampler/square/domain_map.hpp"
 #include "ridge.hpp"
 
 namespace reflectree::detail {

@@ -105,7 +105,8 @@ std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vec
     std::string where = text("theta_o %.4g to %.4g degrees", double(slab.box.lo[0]) * degrees,
                              double(slab.box.hi[0]) * degrees);
     if (slab.box.axes > 1) {
-      where += text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
+      where +=
+          text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
     }
     return where;
   };

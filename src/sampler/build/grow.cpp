@@ -200,7 +200,9 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
       if (dearest < 0 || saved > most) dearest = axis, most = saved;
     }
     if (dearest >= 0) state.next_check = state.leaves * 3 / 2;
-    if (dearest >= 0 && all > (slab.box.axes > 1 ? 1.5f : 1.f) * rules.known_share * max(budget * ideal, cost - ideal)) return {dearest, {}};
+    if (dearest >= 0 &&
+        all > (slab.box.axes > 1 ? 1.5f : 1.f) * rules.known_share * max(budget * ideal, cost - ideal))
+      return {dearest, {}};
   }
   if (met || state.leaves >= rules.max_leaves) return {};
   if (!blind.empty()) return {-1, blind};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Growth of a forest: a partition of the known coordinates into slabs and, in each, a tree over the square. One engine
-// serves both modes. A leaf has a cost (exact: area * maximum; one-shot: area * root mean square) and an
-// ideal (area * mean); a slab is done when sum(cost) <= goal * sum(ideal). Rounds: every leaf of every
+// Growth of a forest: a partition of the known coordinates into slabs and, in each, a tree over the square.
+// One engine serves both modes. A leaf has a cost (exact: area * maximum; one-shot: area * root mean square)
+// and an ideal (area * mean); a slab is done when sum(cost) <= goal * sum(ideal). Rounds: every leaf of every
 // slab that is to be split is evaluated in one batch.
 #pragma once
 

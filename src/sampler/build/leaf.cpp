@@ -89,7 +89,9 @@ float grid_shape(float slope_x, float slope_y, int j, int i) {
 
 // The mean square of the means of T over the groups of views along an axis, at a node.
 float between(std::span<const View> views, std::size_t axis, Grid grid, int j, int i) {
-  const auto value = [&](std::size_t k) { return grid[k * grid_points + std::size_t(j * grid_size + i)].mean; };
+  const auto value = [&](std::size_t k) {
+    return grid[k * grid_points + std::size_t(j * grid_size + i)].mean;
+  };
   float sum = 0;
   for (std::size_t g = 0; g < views_per_axis; ++g) {
     float weight = 0, moment = 0, only = 0;
@@ -143,7 +145,8 @@ void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
       for (int i = 0; i < grid_size; ++i) {
         const float ratio = at(k, j, i).upper / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
         bound = max(bound, ratio);
-        if (ratio > peak) peak = ratio, leaf.peak = std::uint16_t(k * grid_points + std::size_t(j * grid_size + i));
+        if (ratio > peak)
+          peak = ratio, leaf.peak = std::uint16_t(k * grid_points + std::size_t(j * grid_size + i));
       }
     }
     bounds[k] = bound;

@@ -41,7 +41,7 @@ inline constexpr float lobatto_weights[grid_size] = {1.f / 12, 5.f / 12, 5.f / 1
 
 // A viewer of a slab at which its leaves are looked at; the weights of all views sum to 1.
 struct View {
-  Known place;  // shares of the slab's box, in [0, 1]
+  Known place;                       // shares of the slab's box, in [0, 1]
   std::array<std::size_t, 2> group;  // which of the places along each known coordinate it is at
   float weight;
   Known known;
@@ -65,7 +65,7 @@ struct Leaf {
   DyadicCell cell;
   float ideal = 0, cost = 0;
   Known known_cost{};  // the part of the cost that slabs narrower along a known coordinate save
-  float height = 0;                           // bound of T / (albedo q), or its root mean square
+  float height = 0;    // bound of T / (albedo q), or its root mean square
   bool split_x = false;
   std::uint16_t peak = 0;          // exact: index in the grid of the largest T / (albedo q)
   float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)

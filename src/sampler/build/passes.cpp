@@ -97,7 +97,9 @@ std::vector<Slab> build_exact(const Survey& survey, const BuildOptions& options,
 std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& options) {
   std::vector<Slab> slabs = first_slabs(survey);
   constexpr int max_passes = 4;
-  GrowthRules rules{sqrt(1 + 0.8f * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
+  const float share =
+      survey.field.frame.isotropic() ? 0.8f : 0.95f;  // leaves are dearer where wo has two angles
+  GrowthRules rules{sqrt(1 + share * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
   rules.progress = 0.9f, rules.progress_end = 0.99f;
   survey.host.stage("growing one-shot trees");
   for (int pass = 0; pass < max_passes; ++pass) {

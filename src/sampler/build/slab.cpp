@@ -25,12 +25,14 @@ Slab make_slab(const KnownBox& box, const AlbedoTable& table, const Field& field
     slab.views.push_back({place, group, weight, box.at(place), wo, albedo(wo)});
   }
   // The landmarks' way through the slab.
-  const auto travel = [&](std::size_t i, const std::vector<Landmark>& first, const std::vector<Landmark>& last) {
+  const auto travel = [&](std::size_t i, const std::vector<Landmark>& first,
+                          const std::vector<Landmark>& last) {
     if (i >= first.size() || i >= last.size()) return 0.f;
     return max(abs(first[i].p.x - last[i].p.x), abs(first[i].p.y - last[i].p.y));
   };
   const float middle = across > 1 ? 0.5f : 0.f;
-  const std::vector<Landmark> low = field.landmarks(viewer({0, middle})), high = field.landmarks(viewer({1, middle}));
+  const std::vector<Landmark> low = field.landmarks(viewer({0, middle})),
+                              high = field.landmarks(viewer({1, middle}));
   std::vector<Landmark> left, right;
   if (across > 1) left = field.landmarks(viewer({0.5f, 0})), right = field.landmarks(viewer({0.5f, 1}));
   const int steps = across > 1 ? 4 : 12, rows = across > 1 ? 4 : 0;
@@ -40,7 +42,8 @@ Slab make_slab(const KnownBox& box, const AlbedoTable& table, const Field& field
       const Direction wo = viewer(share);
       const std::vector<Landmark> here = field.landmarks(wo);
       for (std::size_t i = 0; i < here.size(); ++i) {
-        slab.marks.push_back({{wo, here[i].p}, albedo(wo), box.at(share), {travel(i, low, high), travel(i, left, right)}});
+        slab.marks.push_back(
+            {{wo, here[i].p}, albedo(wo), box.at(share), {travel(i, low, high), travel(i, left, right)}});
       }
     }
   }

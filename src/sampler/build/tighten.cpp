@@ -36,7 +36,9 @@ Vec2<float> point_at(const Climber& c, const Place& at) {
   const auto x = std::size_t(c.slab->box.axes);
   return {c.box.x0 + c.box.width * at[x], c.box.y0 + c.box.height * at[x + 1]};
 }
-FieldPoint point_of(const Climber& c, const Place& at) { return {viewer_at(known_at(c, at)), point_at(c, at)}; }
+FieldPoint point_of(const Climber& c, const Place& at) {
+  return {viewer_at(known_at(c, at)), point_at(c, at)};
+}
 
 // T / (albedo q): what the leaf's bound must reach at p.
 float ratio_of(const Survey& survey, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
@@ -94,9 +96,7 @@ GridPlace place_in(const Slab& slab, const Box& box, const Known& known, Vec2<fl
   return {slab.box.share_of(known), (p.x - box.x0) / box.width, (p.y - box.y0) / box.height};
 }
 // The known coordinates of a viewer.
-Known known_of(Direction wo, int axes) {
-  return {theta_of_viewer(wo), axes > 1 ? azimuth_of(wo) : 0.f};
-}
+Known known_of(Direction wo, int axes) { return {theta_of_viewer(wo), axes > 1 ? azimuth_of(wo) : 0.f}; }
 
 void raise(const Climber& c, float bound) {
   const Vec2<float> p = point_at(c, c.at);
@@ -116,7 +116,8 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
       // From the largest ratio of the grid, and from the largest T seen by anyone.
       Leaf& leaf = node.leaf;
       const Box box = box_of(leaf.cell, field.domain);
-      climbers.push_back(start_at(slabs[s], leaf, grid_place(slabs[s].views, leaf.peak), 0, 0.2f, field.domain));
+      climbers.push_back(
+          start_at(slabs[s], leaf, grid_place(slabs[s].views, leaf.peak), 0, 0.2f, field.domain));
       if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
       climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_by, leaf.seen_at),
                                   leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));

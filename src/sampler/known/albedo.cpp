@@ -22,7 +22,18 @@ std::size_t node_before(const std::vector<float>& x, float c) {
   return i;
 }
 
-bool is_outside(const std::vector<float>& x, float c) { return x.empty() || !(c >= x.front()) || c > x.back(); }
+// The row that stands for one beyond an end: the mirrored one, or, of a whole period, the one that comes
+// round.
+std::size_t row_beyond(const AlbedoTable& table, std::ptrdiff_t k) {
+  const auto last = std::ptrdiff_t(table.phi_o.size()) - 1;
+  if (k < 0) k = table.even ? -k : k + last;
+  if (k > last) k = table.even ? 2 * last - k : k - last;
+  return std::size_t(k);
+}
+
+bool is_outside(const std::vector<float>& x, float c) {
+  return x.empty() || !(c >= x.front()) || c > x.back();
+}
 
 }  // namespace
 
@@ -42,9 +53,13 @@ float albedo_at(const AlbedoTable& table, float c, float phi_o) {
   const float t = (c - x[i]) / (x[i + 1] - x[i]);
   const float at = clamp(phi_o / table.phi_o.back(), 0.f, 1.f) * float(rows - 1);
   const std::size_t k = std::min(std::size_t(at), rows - 2);
-  const float* here = table.albedo.data() + k * x.size() + i;
-  const float* next = here + x.size();
-  return linear_mix(at - float(k), linear_mix(t, here[0], here[1]), linear_mix(t, next[0], next[1]));
+  const std::array<float, 4> weights = cubic_weights(at - float(k));
+  float sum = 0;
+  for (int n = -1; n <= 2; ++n) {
+    const float* row = table.albedo.data() + row_beyond(table, std::ptrdiff_t(k) + n) * x.size() + i;
+    sum += weights[std::size_t(n + 1)] * linear_mix(t, row[0], row[1]);
+  }
+  return max(sum, 0.f);
 }
 
 void validate(const AlbedoTable& a) {
@@ -53,7 +68,8 @@ void validate(const AlbedoTable& a) {
   if (columns < 2 || columns > 60000 || rows > 4096 || a.albedo.size() != columns * rows) {
     fail("needs 2 to 60000 nodes, a value each");
   }
-  if (a.phi_o.size() == 1 || (!a.phi_o.empty() && a.phi_o.front() != 0)) fail("the azimuths do not begin at 0");
+  if ((!a.phi_o.empty() && a.phi_o.size() < 3) || (!a.phi_o.empty() && a.phi_o.front() != 0))
+    fail("needs three azimuths from 0 on");
   for (std::size_t k = 1; k < a.phi_o.size(); ++k) {
     const float even = a.phi_o.back() * (float(k) / float(a.phi_o.size() - 1));
     if (!(abs(a.phi_o[k] - even) <= 1e-5f * even && even < 6.3f)) fail("the azimuths are not equidistant");
@@ -74,8 +90,9 @@ PackedAlbedo pack(const AlbedoTable& table) {
   const std::size_t columns = table.cos_theta_o.size(), rows = std::max<std::size_t>(table.phi_o.size(), 1);
   PackedAlbedo packed{CosineLookup(table.cos_theta_o), {}, columns - 1, 0};
   if (rows > 1) packed.azimuths_per_radian = float(rows - 1) / table.phi_o.back();
-  for (std::size_t k = 0; k < rows; ++k) {
-    const float* albedo = table.albedo.data() + k * columns;
+  const std::ptrdiff_t beyond = rows > 1 ? 1 : 0;
+  for (std::ptrdiff_t k = -beyond; k < std::ptrdiff_t(rows) + beyond; ++k) {
+    const float* albedo = table.albedo.data() + (rows > 1 ? row_beyond(table, k) : 0) * columns;
     for (std::size_t i = 0; i + 1 < columns; ++i) {
       const double c0 = double(table.cos_theta_o[i]), c1 = double(table.cos_theta_o[i + 1]);
       const double a0 = double(albedo[i]), a1 = double(albedo[i + 1]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene and a ray through Embree.
-#include <reflectree/render/shapes/embree_scene.hpp>
 #include <reflectree/render/scene.hpp>
+#include <reflectree/render/shapes/embree_scene.hpp>
 
 int main() {
   using namespace reflectree::render;

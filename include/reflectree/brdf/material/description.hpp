@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "reflectree/brdf/brdf.hpp"
+#include "reflectree/brdf/models/widths.hpp"
 
 namespace reflectree {
 
@@ -24,18 +25,32 @@ const char* name_of(ModelClass model_class);
 template <class M>
 struct ModelParameter {
   std::string_view name;
-  std::variant<float M::*, Rgb M::*> member;
+  // A number, a colour, one of two widths, or an azimuth.
+  struct Width {
+    Widths M::*widths;
+    float Widths::*along;
+  };
+  std::variant<float M::*, Rgb M::*, Width, Azimuth M::*> member;
   float lo = 0, hi = 1;
   std::string_view unit;  // "" where there is none
   std::string_view meaning;
 
   bool is_rgb() const { return member.index() == 1; }
+  // An azimuth of 0 goes without saying in the canonical text.
+  bool is_quiet() const { return member.index() == 3; }
   Rgb get(const M& model) const {
-    return is_rgb() ? model.**std::get_if<1>(&member) : to_rgb(model.**std::get_if<0>(&member));
+    if (const auto* colour = std::get_if<1>(&member)) return model.**colour;
+    if (const auto* width = std::get_if<2>(&member)) return to_rgb((model.*(width->widths)).*(width->along));
+    if (const auto* azimuth = std::get_if<3>(&member)) return to_rgb((model.**azimuth).degrees);
+    return to_rgb(model.**std::get_if<0>(&member));
   }
   void set(M& model, Rgb value) const {
-    if (is_rgb()) {
-      model.**std::get_if<1>(&member) = value;
+    if (const auto* colour = std::get_if<1>(&member)) {
+      model.** colour = value;
+    } else if (const auto* width = std::get_if<2>(&member)) {
+      (model.*(width->widths)).*(width->along) = value.r;
+    } else if (const auto* azimuth = std::get_if<3>(&member)) {
+      model.** azimuth = Azimuth(value.r);
     } else {
       model.**std::get_if<0>(&member) = value.r;
     }
@@ -67,21 +82,25 @@ inline bool sum_above_one(Rgb a, Rgb b) {
 }
 
 // "ggx:alpha=0.1,f0=1/0.8/0.3", the canonical text of one model.
-std::string model_text(std::string_view model, std::span<const std::string_view> names,
-                       std::span<const Rgb> values);
+struct NamedValue {
+  std::string_view name;
+  Rgb value;
+  bool quiet = false;  // left out where it is 0
+};
+std::string model_text(std::string_view model, std::span<const NamedValue> values);
 
+// Isotropic where the formula is; an anisotropic one is mirrored in the plane at its azimuth.
 template <class M>
 BrdfTraits model_traits(const M& model, bool isotropic = true) {
   const auto description = M::describe();
-  std::vector<std::string_view> names;
-  std::vector<Rgb> values;
-  for (const auto& p : description.parameters) {
-    names.push_back(p.name);
-    values.push_back(p.get(model));
-  }
+  std::vector<NamedValue> values;
+  for (const auto& p : description.parameters) values.push_back({p.name, p.get(model), p.is_quiet()});
   BrdfTraits traits;
-  traits.name = model_text(description.name, names, values);
+  traits.name = model_text(description.name, values);
   traits.isotropic = traits.isotropic_by_formula = isotropic;
+  if constexpr (requires { model.phi; }) {
+    if (!isotropic) traits.axis = float(double(model.phi.degrees) * pi_v<double> / 180);
+  }
   return traits;
 }
 

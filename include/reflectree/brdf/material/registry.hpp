@@ -18,6 +18,7 @@ struct ParameterInfo {
   float lo = 0, hi = 1;
   Rgb initial;  // default
   std::string_view unit, meaning;
+  bool quiet = false;  // left out of the canonical text where it is 0
 };
 
 struct ModelInfo {

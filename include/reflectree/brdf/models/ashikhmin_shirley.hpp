@@ -14,6 +14,7 @@ struct AshikhminShirley {
   Rgb f0{0.05f, 0.05f, 0.05f};
   float n_x = 100;
   float n_y = 100;
+  Azimuth phi = {};
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
@@ -21,7 +22,8 @@ struct AshikhminShirley {
     // at the pole, where the power is 1 whatever e is.
     const T s2 = sin2_theta(g.wh);
     const T tan2 = s2 / max(sqr(g.cos_theta_h), T(1e-18));
-    const T mean = (T(n_x) * sqr(g.wh.x) + T(n_y) * sqr(g.wh.y)) / max(s2, T(1e-30));
+    const Vec3<T> wh = in_frame_of(phi, g).wh;
+    const T mean = (T(n_x) * sqr(wh.x) + T(n_y) * sqr(wh.y)) / max(s2, T(1e-30));
     const T exponent = clamp(mean, min(T(n_x), T(n_y)), max(T(n_x), T(n_y)));
     const T power = exp(T(-0.5) * exponent * log1p(tan2));
     const T scale = sqrt((T(n_x) + T(1)) * (T(n_y) + T(1))) / (T(8) * pi_v<T>);
@@ -42,7 +44,8 @@ struct AshikhminShirley {
             {{"kd", &AshikhminShirley::kd, 0, 1, "", "diffuse albedo (Rd)"},
              {"f0", &AshikhminShirley::f0, 0, 1, "", "specular reflectance at normal incidence (Rs)"},
              {"n_x", &AshikhminShirley::n_x, 1, 1e6f, "", "exponent along x (nu)"},
-             {"n_y", &AshikhminShirley::n_y, 1, 1e6f, "", "exponent along y (nv)"}}};
+             {"n_y", &AshikhminShirley::n_y, 1, 1e6f, "", "exponent along y (nv)"},
+             {"phi_deg", &AshikhminShirley::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
 

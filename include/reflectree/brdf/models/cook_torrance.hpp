@@ -3,6 +3,7 @@
 
 #include "reflectree/brdf/material/description.hpp"
 #include "reflectree/brdf/models/fresnel.hpp"
+#include "reflectree/brdf/models/widths.hpp"
 
 namespace reflectree {
 
@@ -13,6 +14,13 @@ T beckmann_distribution(Vec3<T> wh, T alpha, const Exponential& exponential) {
   const T hz2 = max(sqr(wh.z), T(1e-18));  // keeps hz^4 a normal float
   const T a2 = sqr(alpha);
   return exponential(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
+}
+// The same with two widths.
+template <class T>
+T beckmann_distribution(Vec3<T> wh, Widths alpha) {
+  const T hz2 = max(sqr(wh.z), T(1e-18));
+  const T slope2 = (sqr(wh.x / T(alpha.x)) + sqr(wh.y / T(alpha.y))) / hz2;
+  return exp(-slope2) / (pi_v<T> * T(alpha.x) * T(alpha.y) * sqr(hz2));
 }
 template <class T>
 T beckmann_distribution(Vec3<T> wh, T alpha) {
@@ -34,15 +42,18 @@ struct CookTorrance {
   Rgb kd{0.2f, 0.2f, 0.2f};
   Rgb ks{0.8f, 0.8f, 0.8f};
   Rgb f0{0.9f, 0.6f, 0.4f};
-  float alpha = 0.2f;
+  Widths alpha = 0.2f;
+  Azimuth phi = {};
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    const T lobe = beckmann_distribution(g.wh, T(alpha)) * v_cavity_visibility(g);
+    const T d = alpha.round() ? beckmann_distribution(g.wh, T(alpha.x))
+                              : beckmann_distribution(in_frame_of(phi, g).wh, alpha);
+    const T lobe = d * v_cavity_visibility(g);
     return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * (as_rgb<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
   }
 
-  BrdfTraits traits() const { return model_traits(*this); }
+  BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
   const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
   static ModelDescription<CookTorrance> describe() {
     return {
@@ -53,7 +64,11 @@ struct CookTorrance {
         {{"kd", &CookTorrance::kd, 0, 1, "", "diffuse albedo"},
          {"ks", &CookTorrance::ks, 0, 1, "", "weight of the microfacets"},
          {"f0", &CookTorrance::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
-         {"alpha", &CookTorrance::alpha, 1e-3f, 1, "", "microfacet width (m in the paper)"}}};
+         {"alpha_x", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::x}, 1e-3f, 1, "",
+          "microfacet width along x (m in the paper)"},
+         {"alpha_y", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::y}, 1e-3f, 1, "",
+          "microfacet width along y"},
+         {"phi_deg", &CookTorrance::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include "reflectree/brdf/material/description.hpp"
 #include "reflectree/brdf/models/fresnel.hpp"
+#include "reflectree/brdf/models/widths.hpp"
 
 namespace reflectree {
 
@@ -12,6 +13,13 @@ template <class T>
 T ggx_distribution(Vec3<T> wh, T alpha) {
   const T s = sin2_theta(wh) + sqr(alpha * wh.z);
   return sqr(alpha) / (pi_v<T> * s * s);
+}
+
+// The same with two widths; Heitz 2014, eq. 85.
+template <class T>
+T ggx_distribution(Vec3<T> wh, Widths alpha) {
+  const T s = sqr(wh.x / T(alpha.x)) + sqr(wh.y / T(alpha.y)) + sqr(wh.z);
+  return T(1) / (pi_v<T> * T(alpha.x) * T(alpha.y) * s * s);
 }
 
 // Smith's masking of one direction, 2 / (1 + sqrt(1 + alpha^2 tan^2 theta)); Walter et al. 2007, eq. 34.
@@ -30,26 +38,49 @@ T ggx_visibility(T cos_theta_o, T cos_theta_i, T alpha) {
   return T(0.5) / (lambda_i + lambda_o);
 }
 
+// The same with two widths: alpha^2 sin^2 theta becomes alpha_x^2 x^2 + alpha_y^2 y^2.
+template <class T>
+T ggx_visibility(const ShadingGeometry<T>& g, Widths alpha) {
+  const auto widened = [&](const Vec3<T>& w) {
+    return sqrt(sqr(w.z) + sqr(T(alpha.x) * w.x) + sqr(T(alpha.y) * w.y));
+  };
+  return T(0.5) / (g.cos_theta_o * widened(g.wi) + g.cos_theta_i * widened(g.wo));
+}
+// D and G2 / (4 cos_o cos_i).
+template <class T>
+struct GgxLobe {
+  T distribution, visibility;
+};
+template <class T>
+GgxLobe<T> ggx_lobe(const ShadingGeometry<T>& g, Widths alpha) {
+  if (!alpha.round()) return {ggx_distribution(g.wh, alpha), ggx_visibility(g, alpha)};
+  return {ggx_distribution(g.wh, T(alpha.x)), ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha.x))};
+}
+
 // GGX conductor: f = D F G2 / (4 cos_o cos_i), Fresnel by Schlick.
 struct Ggx {
-  float alpha = 0.1f;
+  Widths alpha = 0.1f;
   Rgb f0{1.f, 0.8f, 0.3f};
+  Azimuth phi = {};
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    const T d = ggx_distribution(g.wh, T(alpha));
-    const T v = ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha));
-    return d * v * fresnel_schlick(f0, g.cos_theta_d);
+    const GgxLobe<T> lobe = ggx_lobe(in_frame_of(phi, g), alpha);
+    return lobe.distribution * lobe.visibility * fresnel_schlick(f0, g.cos_theta_d);
   }
 
-  BrdfTraits traits() const { return model_traits(*this); }
+  BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
   static ModelDescription<Ggx> describe() {
     return {"ggx",
             ModelClass::physical,
             "metal of microfacets: Trowbridge-Reitz, height-correlated Smith, Schlick's Fresnel term",
             "Walter et al. 2007, Microfacet models for refraction, eq. 33; Heitz 2014, eq. 99",
-            {{"alpha", &Ggx::alpha, 1e-3f, 1, "", "microfacet width"},
-             {"f0", &Ggx::f0, 0, 1, "", "Fresnel reflectance at normal incidence"}}};
+            {{"alpha_x", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::x}, 1e-3f, 1, "",
+              "microfacet width along x"},
+             {"alpha_y", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::y}, 1e-3f, 1, "",
+              "microfacet width along y"},
+             {"f0", &Ggx::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
+             {"phi_deg", &Ggx::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
 

@@ -12,20 +12,21 @@ namespace reflectree {
 struct Plastic {
   Rgb kd{0.1f, 0.3f, 0.6f};
   float f0 = 0.04f;
-  float alpha = 0.1f;
+  Widths alpha = 0.1f;
+  Azimuth phi = {};
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T f = T(f0);
-    const T coat = (f + (T(1) - f) * schlick_power(g.cos_theta_d)) * ggx_distribution(g.wh, T(alpha)) *
-                   ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha));
+    const GgxLobe<T> lobe = ggx_lobe(in_frame_of(phi, g), alpha);
+    const T coat = (f + (T(1) - f) * schlick_power(g.cos_theta_d)) * lobe.distribution * lobe.visibility;
     // 1 - F(c) = (1 - f0) (1 - (1 - c)^5).
     const T base =
         sqr(T(1) - f) / pi_v<T> * schlick_complement(g.cos_theta_o) * schlick_complement(g.cos_theta_i);
     return base * as_rgb<T>(kd) + RgbT<T>{coat, coat, coat};
   }
 
-  BrdfTraits traits() const { return model_traits(*this); }
+  BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
   static ModelDescription<Plastic> describe() {
     return {"plastic",
             ModelClass::physical,
@@ -33,7 +34,11 @@ struct Plastic {
             "Shirley et al. 1997, A practitioners' assessment of light reflection models; Walter et al. 2007",
             {{"kd", &Plastic::kd, 0, 1, "", "albedo of the base"},
              {"f0", &Plastic::f0, 0, 1, "", "Fresnel reflectance of the coat at normal incidence"},
-             {"alpha", &Plastic::alpha, 1e-3f, 1, "", "microfacet width of the coat"}}};
+             {"alpha_x", ModelParameter<Plastic>::Width{&Plastic::alpha, &Widths::x}, 1e-3f, 1, "",
+              "microfacet width of the coat along x"},
+             {"alpha_y", ModelParameter<Plastic>::Width{&Plastic::alpha, &Widths::y}, 1e-3f, 1, "",
+              "microfacet width of the coat along y"},
+             {"phi_deg", &Plastic::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
 

@@ -9,23 +9,28 @@ namespace reflectree {
 // GGX with wi mirrored about the normal: the peak lies at wi = wo ("back vector"). Mirroring preserves
 // measure and cosine, so the albedo is that of Ggx. Belcour et al. 2014.
 struct RetroReflector {
-  float alpha = 0.1f;
+  Widths alpha = 0.1f;
   Rgb f0{0.8f, 0.8f, 0.8f};
+  Azimuth phi = {};
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    return Ggx{alpha, f0}(shading_geometry(g.wo, mirror_direction(g.wi)));
+    return Ggx{alpha, f0, phi}(shading_geometry(g.wo, mirror_direction(g.wi)));
   }
 
-  BrdfTraits traits() const { return model_traits(*this); }
+  BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
   static ModelDescription<RetroReflector> describe() {
     return {"retro_reflector",
             ModelClass::physical,
             "GGX lobe about the direction of the viewer",
             "Belcour et al. 2014, BRDF measurements and analysis of retroreflective materials; Walter et al. "
             "2007",
-            {{"alpha", &RetroReflector::alpha, 1e-3f, 1, "", "microfacet width"},
-             {"f0", &RetroReflector::f0, 0, 1, "", "Fresnel reflectance at normal incidence"}}};
+            {{"alpha_x", ModelParameter<RetroReflector>::Width{&RetroReflector::alpha, &Widths::x}, 1e-3f, 1,
+              "", "microfacet width along x"},
+             {"alpha_y", ModelParameter<RetroReflector>::Width{&RetroReflector::alpha, &Widths::y}, 1e-3f, 1,
+              "", "microfacet width along y"},
+             {"f0", &RetroReflector::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
+             {"phi_deg", &RetroReflector::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
 

@@ -13,11 +13,13 @@ struct Ward {
   Rgb ks{0.6f, 0.6f, 0.6f};
   float alpha_x = 0.15f;
   float alpha_y = 0.15f;
+  Azimuth phi = {};
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T hz2 = max(sqr(g.cos_theta_h), T(1e-18));  // keeps hz^4 a normal float
-    const T slope2 = (sqr(g.wh.x / T(alpha_x)) + sqr(g.wh.y / T(alpha_y))) / hz2;
+    const Vec3<T> wh = in_frame_of(phi, g).wh;
+    const T slope2 = (sqr(wh.x / T(alpha_x)) + sqr(wh.y / T(alpha_y))) / hz2;
     const T scale = T(1) / (T(4) * pi_v<T> * T(alpha_x) * T(alpha_y));
     const T lobe = scale * exp(-slope2) / (sqr(g.cos_theta_d) * sqr(hz2));
     return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * as_rgb<T>(ks);
@@ -33,7 +35,8 @@ struct Ward {
             {{"kd", &Ward::kd, 0, 1, "", "diffuse albedo"},
              {"ks", &Ward::ks, 0, 1, "", "bound of the lobe's albedo"},
              {"alpha_x", &Ward::alpha_x, 1e-3f, 1, "", "width of the slopes along x"},
-             {"alpha_y", &Ward::alpha_y, 1e-3f, 1, "", "width of the slopes along y"}}};
+             {"alpha_y", &Ward::alpha_y, 1e-3f, 1, "", "width of the slopes along y"},
+             {"phi_deg", &Ward::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
 

@@ -11,9 +11,9 @@
 // their bias; passes are independent, so that the film's standard errors hold, bias apart.
 #pragma once
 
-#include "reflectree/render/lights/emission.hpp"
 #include "reflectree/render/integrators/integrator.hpp"
 #include "reflectree/render/integrators/photon_map.hpp"
+#include "reflectree/render/lights/emission.hpp"
 
 namespace reflectree::render {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "reflectree/brdf/value.hpp"
-#include "reflectree/picture/image.hpp"
 #include "reflectree/math/frame.hpp"
+#include "reflectree/picture/image.hpp"
 #include "reflectree/render/integrators/path_bits.hpp"
 
 namespace reflectree::render {

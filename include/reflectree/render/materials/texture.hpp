@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "reflectree/brdf/value.hpp"
-#include "reflectree/picture/image.hpp"
 #include "reflectree/math/direction.hpp"
+#include "reflectree/picture/image.hpp"
 
 namespace reflectree::render {
 

@@ -3,13 +3,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
+#include "reflectree/math/scalar.hpp"
 #include "reflectree/sampler/known/cosine_lookup.hpp"
 
 namespace reflectree {
 
-// Piecewise linear in cos_theta_o and, of anisotropic functions, in phi_o.
+// Piecewise linear in cos_theta_o; of anisotropic functions cubic in phi_o, through four rows.
 struct AlbedoTable {
   std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
   std::vector<float> albedo;       // [phi_o][cos_theta_o]
@@ -17,6 +19,7 @@ struct AlbedoTable {
   float relative_error = 0;
   // Equidistant azimuths of the viewer from 0 to azimuth_span, radians; empty for isotropic functions.
   std::vector<float> phi_o = {};
+  bool even = false;  // in phi_o about both ends, by mirror planes; else periodic
   friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
@@ -30,11 +33,18 @@ struct AlbedoPiece {
   float base, slope;  // albedo = base + slope cos_theta_o
 };
 
+// The weights of four equidistant values at -1, 0, 1, 2 in the cubic through them, at t in [0, 1].
+REFLECTREE_INLINE std::array<float, 4> cubic_weights(float t) {
+  const float a = t + 1, b = t - 1, c = t - 2;
+  return {-t * b * c / 6, a * b * c / 2, -a * t * c / 2, a * t * b / 6};
+}
+
 struct PackedAlbedo {
   CosineLookup lookup;
-  std::vector<AlbedoPiece> pieces;  // [phi_o][cos_theta_o]
-  std::size_t row = 0;              // pieces of one azimuth
-  float azimuths_per_radian = 0;    // 0 for isotropic functions
+  // [phi_o][cos_theta_o]; of anisotropic functions with a row more at both ends.
+  std::vector<AlbedoPiece> pieces;
+  std::size_t row = 0;            // pieces of one azimuth
+  float azimuths_per_radian = 0;  // 0 for isotropic functions
 
   float at(float cos_theta_o) const {
     const AlbedoPiece& piece = pieces[lookup(cos_theta_o)];
@@ -42,12 +52,15 @@ struct PackedAlbedo {
   }
   // phi_o in [0, azimuth_span].
   float at(float cos_theta_o, float phi_o) const {
-    const std::size_t i = lookup(cos_theta_o), rows = pieces.size() / row;
-    const float x = phi_o * azimuths_per_radian;
-    const std::size_t k = x > 0 ? std::min(std::size_t(x), rows - 2) : 0;
-    const AlbedoPiece &a = pieces[k * row + i], &b = pieces[(k + 1) * row + i];
-    const float here = a.base + a.slope * cos_theta_o, next = b.base + b.slope * cos_theta_o;
-    return here + (next - here) * (x - float(k));
+    const std::size_t last = pieces.size() / row - 4;
+    const float x = max(phi_o * azimuths_per_radian, 0.f);
+    const std::size_t k = std::min(std::size_t(x), last);
+    const std::array<float, 4> weights = cubic_weights(x - float(k));
+    const AlbedoPiece* piece = pieces.data() + k * row + lookup(cos_theta_o);
+    float sum = 0;
+    for (std::size_t i = 0; i < 4; ++i, piece += row)
+      sum += weights[i] * (piece->base + piece->slope * cos_theta_o);
+    return max(sum, 0.f);
   }
   std::size_t bytes() const { return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece); }
 };

@@ -31,7 +31,8 @@ inline constexpr float unit_length_tolerance = 1e-3f;
 
 namespace detail {
 // The rest of find_incidence for anisotropic functions: wo is folded, and the domain's frame follows.
-REFLECTREE_INLINE void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse) {
+REFLECTREE_INLINE void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta,
+                                   float inverse) {
   in.side = 0;
   // In the frame of the axis.
   Direction w = turn(in.known, viewer.cos_axis, -viewer.sin_axis);

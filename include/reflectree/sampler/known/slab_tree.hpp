@@ -31,7 +31,7 @@ class SlabTree {
  private:
   static constexpr std::uint32_t leaf = 2;
   struct Node {
-    float split = 0;  // the cosine of theta_o, or phi_o
+    float split = 0;                                // the cosine of theta_o, or phi_o
     std::uint32_t axis : 2 = leaf, upper : 30 = 0;  // the upper child; of a leaf, its slab
   };
   std::vector<Node> nodes_;  // in preorder

@@ -19,6 +19,10 @@ enum class ViewerSymmetry : std::uint8_t {
 };
 const char* name_of(ViewerSymmetry symmetry);
 
+constexpr bool is_mirrored(ViewerSymmetry symmetry) {
+  return symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::one_plane;
+}
+
 struct ViewerFrame {
   ViewerSymmetry symmetry = ViewerSymmetry::isotropic;
   float axis = 0;  // radians: the azimuth of the frame's x axis in the caller's frame

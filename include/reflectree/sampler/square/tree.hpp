@@ -23,8 +23,8 @@ struct CanonicalTree {
   friend bool operator==(const CanonicalTree&, const CanonicalTree&) = default;
 };
 
-// Throws Error, naming `where`, unless the tree is complete, at most 15 levels deep per axis, and has one mass
-// that is not 0 and two slopes per leaf.
+// Throws Error, naming `where`, unless the tree is complete, at most 15 levels deep per axis, and has one
+// mass that is not 0 and two slopes per leaf.
 void validate(const CanonicalTree& tree, const std::string& where);
 
 double total_mass(const CanonicalTree& tree);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parameters that models of anisotropic surfaces share.
+#pragma once
+
+#include "reflectree/brdf/shading_geometry.hpp"
+
+namespace reflectree {
+
+// Microfacet widths along x and y; one number stands for both.
+struct Widths {
+  float x = 0, y = 0;
+  constexpr Widths(float both) : x(both), y(both) {}
+  constexpr Widths(float along_x, float along_y) : x(along_x), y(along_y) {}
+  constexpr bool round() const { return x == y; }
+};
+
+// The azimuth, in degrees, of the x axis of a model's own frame in the surface's.
+struct Azimuth {
+  float degrees = 0;
+  float cosine = 1, sine = 0;
+  constexpr Azimuth() = default;
+  Azimuth(float the_degrees)
+      : degrees(the_degrees),
+        cosine(the_degrees == 0 ? 1.f : float(std::cos(double(the_degrees) * pi_v<double> / 180))),
+        sine(the_degrees == 0 ? 0.f : float(std::sin(double(the_degrees) * pi_v<double> / 180))) {}
+};
+
+// The same pair of directions in the frame of the model.
+template <class T>
+ShadingGeometry<T> in_frame_of(const Azimuth& azimuth, const ShadingGeometry<T>& g) {
+  if (azimuth.degrees == 0) return g;
+  const T c = T(azimuth.cosine), s = T(azimuth.sine);
+  const auto turned = [&](const Vec3<T>& w) { return Vec3<T>{c * w.x + s * w.y, c * w.y - s * w.x, w.z}; };
+  return {turned(g.wo),  turned(g.wi),  turned(g.wh), g.cos_theta_o,
+          g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
+}
+
+}  // namespace reflectree
