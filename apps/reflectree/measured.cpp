@@ -19,7 +19,8 @@ bool any(const Counts& counts) { return counts != Counts{}; }
 double degrees(float radians) { return double(radians) * 180 / pi_v<double>; }
 
 // "red 1 %, green 0, blue .3 % of 20000 random pairs"
-std::string by_channel(const Counts& counts, std::uint64_t pairs) {
+std::string by_channel(const Counts& counts, std::uint64_t pairs, int channels) {
+  if (channels == 1) return fmt::format("{} of {} random pairs", percent(counts[0], pairs), pairs);
   return fmt::format("red {}, green {}, blue {} of {} random pairs", percent(counts[0], pairs),
                      percent(counts[1], pairs), percent(counts[2], pairs), pairs);
 }
@@ -92,7 +93,8 @@ Json measured_json(const std::vector<MeasuredFile>& files) {
                    {"clipped_share", counts_json(facts.clipped, facts.pairs)},
                    {"bridged_share", counts_json(facts.bridged, facts.pairs)},
                    {"dark_share", counts_json(facts.dark, facts.pairs)},
-                   {"by_elevation", bands}});
+                   {"by_elevation", bands},
+                   {"notes", facts.notes}});
   }
   return all;
 }
@@ -101,18 +103,21 @@ std::vector<NamedLine> measured_lines(const MeasuredFile& file) {
   const MeasuredFacts& facts = file.facts;
   std::vector<NamedLine> lines{
       {"measured", fmt::format("{}: {}, {}", file.text, facts.kind, entries_text(facts))}};
-  if (!facts.theta_o.empty() && degrees(facts.theta_o.back()) < 89.5) {
-    lines.push_back({"", fmt::format("nothing was measured for theta_o beyond {:.1f} deg: what was measured "
+  const auto ends_at = [&](const char* side, float theta_o) {
+    lines.push_back({"", fmt::format("nothing was measured for theta_o {} {:.1f} deg: what was measured "
                                      "there stands in",
-                                     degrees(facts.theta_o.back()))});
-  }
+                                     side, degrees(theta_o))});
+  };
+  if (!facts.theta_o.empty() && degrees(facts.theta_o.front()) > 0.5) ends_at("below", facts.theta_o.front());
+  if (!facts.theta_o.empty() && degrees(facts.theta_o.back()) < 89.5) ends_at("beyond", facts.theta_o.back());
   const auto told = [&](const char* name, const Counts& counts) {
-    if (any(counts)) lines.push_back({name, by_channel(counts, facts.pairs)});
+    if (any(counts)) lines.push_back({name, by_channel(counts, facts.pairs, facts.channels)});
   };
   told("clipped at 0", facts.clipped);
   told("bridged gaps", facts.bridged);
   told("gaps read as 0", facts.dark);
   if (lines.back().value.ends_with("random pairs")) lines.back().value += worst_band(facts);
+  for (const std::string& note : facts.notes) lines.push_back({"", note});
   return lines;
 }
 

@@ -63,10 +63,6 @@ std::string lowered(std::string_view text) {
 bool contains(std::string_view text, std::string_view word) { return text.find(word) != text.npos; }
 
 FileKind markup(std::string_view text) {
-  // Radiance's tools may write a line of their own before the XML.
-  if (contains(text, "<WindowElement")) {
-    return {"a WINDOW/Radiance BSDF XML file, a format that is not read", ""};
-  }
   const std::string start = lowered(text);
   if (start.rfind("<!doctype html", 0) == 0 || start.rfind("<html", 0) == 0 ||
       (start.rfind("<", 0) == 0 && contains(start, "<html"))) {
@@ -92,11 +88,7 @@ FileKind recognise_file(ByteView bytes) {
   if (text.rfind("\xef\xbb\xbf", 0) == 0) text.remove_prefix(3);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   if (text.rfind(lfs, 0) == 0) return {"a Git LFS pointer", "fetch the file with git lfs pull"};
-  if (const FileKind kind = markup(text); !kind.what.empty()) return kind;
-  if (contains(text, "\nScatterType") && contains(text, "\nSampleRotation")) {
-    return {"a Zemax BSDF, a format that is not read", ""};
-  }
-  return {};
+  return markup(text);
 }
 
 void refuse_recognised(ByteView bytes, const std::string& where, const std::string& how) {

@@ -2,60 +2,21 @@
 #include "format_facts.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
+#include "probe_pairs.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/merl.hpp"
 #include "reflectree/formats/model_tables.hpp"
 #include "reflectree/formats/rgl.hpp"
-#include "reflectree/math/random.hpp"
 
 namespace reflectree {
 namespace {
 
-constexpr std::uint64_t pair_count = 20000, seed = 38;
-
-Direction uniform_direction(Pcg32& random) {
-  const float z = 1 - to_unit_float(random()), phi = 2 * pi * to_unit_float(random());
-  const float r = sqrt(max(1 - z * z, 0.f));
-  return {r * cos(phi), r * sin(phi), z};
-}
-
-enum class Verdict { sound, clipped, bridged, dark };
-
-// Asks judge(g, channel) of random pairs.
-template <class Judge>
-void probe(MeasuredFacts& facts, const Judge& judge) {
-  Pcg32 random(seed);
-  while (facts.pairs < pair_count) {
-    const Direction wo = uniform_direction(random);
-    Direction wi = uniform_direction(random);
-    if (facts.pairs % 2 == 0) {
-      const float x = to_unit_float(random()) - 0.5f, y = to_unit_float(random()) - 0.5f;
-      wi = reflect(wo, normalize(Direction{0.5f * x, 0.5f * y, 1}));
-    }
-    if (!(wi.z > 0)) continue;
-    const ShadingGeometry<float> g = shading_geometry(wo, wi);
-    const double elevation_deg = std::acos(double(min(wo.z, wi.z))) * 180 / pi_v<double>;
-    std::size_t band = 0;
-    while (band + 1 < facts.pairs_in_band.size() && elevation_deg >= MeasuredFacts::bands_deg[band + 1])
-      ++band;
-    bool touched = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Verdict verdict = judge(g, int(c));
-      touched = touched || verdict != Verdict::sound;
-      if (verdict == Verdict::clipped) ++facts.clipped[c];
-      if (verdict == Verdict::bridged) ++facts.bridged[c];
-      if (verdict == Verdict::dark) ++facts.dark[c];
-    }
-    ++facts.pairs, ++facts.pairs_in_band[band];
-    if (touched) ++facts.touched_in_band[band];
-  }
-}
-
 template <class F>
 void probe_sign(MeasuredFacts& facts, const F& f) {
-  probe(facts, [&f](const ShadingGeometry<float>& g, int c) {
-    return channel_value(f.unclipped(g), c) < 0 ? Verdict::clipped : Verdict::sound;
+  probe_pairs(facts, [&f](const ShadingGeometry<float>& g, int c) {
+    return channel_value(f.unclipped(g), c) < 0 ? PairVerdict::clipped : PairVerdict::sound;
   });
 }
 
@@ -67,19 +28,76 @@ TableLookup merl_lookup(const std::string& path, const std::string& member) {
   throw Error("no member '" + member + "'", path, "its look-ups are #nearest and #linear");
 }
 
-MeasuredFacts rgl_facts(ByteView bytes, const std::string& path, const std::string&) {
-  const RglFields fields = read_rgl_fields(bytes, path);
+bool rgl_as_rgb(ByteView bytes, const std::string& path, const std::string& member) {
+  if (member.empty()) return false;
+  if (rgl_layout(bytes, path).wavelengths.empty()) {
+    throw Error("no member '" + member + "': the file is one material", path, "leave out #" + member);
+  }
+  if (member != "spectrum" && member != "rgb") {
+    throw Error("no member '" + member + "'", path, "its members are #spectrum and #rgb");
+  }
+  return member == "rgb";
+}
+
+namespace {
+
+// Negative entries of colours, for each theta_o, the slices of all azimuths together.
+void count_negative(MeasuredFacts& facts, const std::vector<float>& ndf, const std::vector<float>& colours,
+                    std::size_t azimuths) {
   const auto is_negative = [](float v) { return v < 0; };
+  const std::size_t elevations = facts.theta_o.size(), slice = colours.size() / (elevations * azimuths);
+  facts.entries = ndf.size() + colours.size();
+  facts.negative = std::uint64_t(std::count_if(ndf.begin(), ndf.end(), is_negative));
+  facts.negative_at.assign(elevations, 0);
+  for (std::size_t i = 0; i < azimuths * elevations; ++i) {
+    const auto first = colours.begin() + std::ptrdiff_t(i * slice);
+    const auto count = std::uint64_t(std::count_if(first, first + std::ptrdiff_t(slice), is_negative));
+    facts.negative_at[i % elevations] += count, facts.negative += count;
+  }
+}
+
+// Of a file with more azimuths or other channels.
+MeasuredFacts wide_rgl_facts(const RglWideFields& fields, const RglLayout& layout) {
   MeasuredFacts facts;
   facts.kind = "RGL tensor_file";
-  facts.entries = fields.ndf.size() + fields.rgb.size();
-  facts.negative = std::uint64_t(std::count_if(fields.ndf.begin(), fields.ndf.end(), is_negative));
-  facts.theta_o = fields.theta_o;
-  const auto slice = std::ptrdiff_t(fields.rgb.size() / fields.theta_o.size());
-  for (auto first = fields.rgb.begin(); first != fields.rgb.end(); first += slice) {
-    facts.negative_at.push_back(std::uint64_t(std::count_if(first, first + slice, is_negative)));
-    facts.negative += facts.negative_at.back();
+  if (layout.azimuths > 2) {
+    facts.kind += " of " + std::to_string(layout.azimuths) + " azimuths, " +
+                  (fields.reduction == 4   ? "mirrored in two planes"
+                   : fields.reduction == 2 ? "half a turn alike"
+                                           : "without symmetry");
   }
+  if (!layout.wavelengths.empty()) {
+    char text[64];
+    std::snprintf(text, sizeof text, ", %zu wavelengths, %g to %g nm", layout.wavelengths.size(),
+                  double(layout.wavelengths.front()), double(layout.wavelengths.back()));
+    facts.kind += text;
+  }
+  facts.theta_o = fields.theta_o;
+  count_negative(facts, fields.ndf.values, fields.colours, fields.phi_o.size());
+  facts.channels = fields.channels == 3 ? 3 : 1;
+  if (!layout.wavelengths.empty() && fields.channels == 3)
+    facts.notes.push_back("colours by the CIE 1931 observer under D65");
+  const RglWideTable table(fields);
+  probe_pairs(facts, [&](const ShadingGeometry<float>& g, int c) {
+    const Spectrum value = table.unclipped(g);
+    bool negative = value[c < value.channels() ? c : 0] < 0;
+    for (int k = 0; fields.channels != 3 && k < value.channels(); ++k) negative = negative || value[k] < 0;
+    return negative ? PairVerdict::clipped : PairVerdict::sound;
+  });
+  return facts;
+}
+
+}  // namespace
+
+MeasuredFacts rgl_facts(ByteView bytes, const std::string& path, const std::string& member) {
+  const bool as_rgb = rgl_as_rgb(bytes, path, member);
+  const RglLayout layout = rgl_layout(bytes, path);
+  if (!layout.is_isotropic_rgb()) return wide_rgl_facts(read_rgl_wide_fields(bytes, path, as_rgb), layout);
+  const RglFields fields = read_rgl_fields(bytes, path);
+  MeasuredFacts facts;
+  facts.kind = "RGL tensor_file";
+  facts.theta_o = fields.theta_o;
+  count_negative(facts, fields.ndf, fields.rgb, 1);
   probe_sign(facts, RglTable(fields));
   return facts;
 }
@@ -92,9 +110,9 @@ MeasuredFacts merl_facts(ByteView bytes, const std::string& path, const std::str
   facts.entries = table.rgb.size();
   facts.not_measured =
       std::uint64_t(std::count_if(table.rgb.begin(), table.rgb.end(), [](float v) { return v < 0; }));
-  probe(facts, [&table](const ShadingGeometry<float>& g, int c) {
+  probe_pairs(facts, [&table](const ShadingGeometry<float>& g, int c) {
     const float share = channel_value(table.unmeasured(g), c);
-    return share <= 0 ? Verdict::sound : share >= 1 ? Verdict::dark : Verdict::bridged;
+    return share <= 0 ? PairVerdict::sound : share >= 1 ? PairVerdict::dark : PairVerdict::bridged;
   });
   return facts;
 }

@@ -10,6 +10,9 @@ namespace reflectree {
 // The look-up that the member of a MERL file names. Throws Error for others.
 TableLookup merl_lookup(const std::string& path, const std::string& member);
 
+// Whether the member of an RGL file is the RGB of its spectra. Throws Error for what is none.
+bool rgl_as_rgb(ByteView bytes, const std::string& path, const std::string& member);
+
 MeasuredFacts rgl_facts(ByteView bytes, const std::string& path, const std::string& member);
 MeasuredFacts merl_facts(ByteView bytes, const std::string& path, const std::string& member);
 MeasuredFacts table_facts(ByteView bytes, const std::string& path, const std::string& member);

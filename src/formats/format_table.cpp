@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "format_facts.hpp"
+#include "klems.hpp"
 #include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file_kind.hpp"
@@ -11,6 +12,7 @@
 #include "reflectree/formats/model_tables.hpp"
 #include "reflectree/formats/rgl.hpp"
 #include "reflectree/text/joined_words.hpp"
+#include "zemax.hpp"
 
 namespace reflectree {
 
@@ -18,9 +20,20 @@ namespace reflectree {
 
 namespace {
 
-AnyBrdf read_rgl_material(ByteView bytes, const std::string& path, const std::string&) {
-  RglTable table = read_rgl(bytes, path);
-  table.name = file_text(path, "");
+std::vector<std::string> rgl_members(ByteView bytes, const std::string& path) {
+  if (rgl_layout(bytes, path).wavelengths.empty()) return {};
+  return {"spectrum", "rgb"};
+}
+
+AnyBrdf read_rgl_material(ByteView bytes, const std::string& path, const std::string& member) {
+  const bool as_rgb = rgl_as_rgb(bytes, path, member);
+  if (rgl_layout(bytes, path).is_isotropic_rgb()) {
+    RglTable table = read_rgl(bytes, path);
+    table.name = file_text(path, "");
+    return table;
+  }
+  RglWideTable table(read_rgl_wide_fields(bytes, path, as_rgb));
+  table.name = file_text(path, member);
   return table;
 }
 
@@ -61,9 +74,10 @@ constexpr MaterialFormat formats[] = {
      .example = "paper_white.bsdf",
      .ending = ".bsdf",
      .max_bytes = max_rgl_bytes,
-     .members = FileMembers::none,
+     .members = FileMembers::ways,
      .recognised = is_tensor_file,
      .read = read_rgl_material,
+     .list_members = rgl_members,
      .facts = rgl_facts},
     {.key = "merl",
      .name = "a MERL .binary",
@@ -76,6 +90,28 @@ constexpr MaterialFormat formats[] = {
      .read = read_merl_material,
      .list_members = merl_lookups,
      .facts = merl_facts},
+    {.key = "zemax",
+     .name = "a Zemax .bsdf",
+     .kind = "a measured material (Zemax .bsdf)",
+     .example = "paint.bsdf",
+     .ending = ".bsdf",
+     .max_bytes = max_zemax_bytes,
+     .members = FileMembers::ways,
+     .recognised = is_zemax_file,
+     .read = read_zemax,
+     .list_members = zemax_members,
+     .facts = zemax_facts},
+    {.key = "klems",
+     .name = "a WINDOW/Radiance BSDF XML",
+     .kind = "a measured material (WINDOW/Radiance BSDF XML)",
+     .example = "blinds.xml",
+     .ending = ".xml",
+     .max_bytes = max_klems_bytes,
+     .members = FileMembers::ways,
+     .recognised = is_window_xml,
+     .read = read_klems,
+     .list_members = klems_members,
+     .facts = klems_facts},
     {.key = "table",
      .name = "a CSV of NBRDF, SGD or ABC materials",
      .kind = "a table of materials (CSV)",
@@ -123,7 +159,8 @@ std::string format_names() {
 std::vector<std::string_view> material_endings() {
   std::vector<std::string_view> endings;
   for (const MaterialFormat& format : formats) {
-    if (format.members != FileMembers::materials) endings.push_back(format.ending);
+    const bool new_one = std::find(endings.begin(), endings.end(), format.ending) == endings.end();
+    if (format.members != FileMembers::materials && new_one) endings.push_back(format.ending);
   }
   return endings;
 }

@@ -2,11 +2,11 @@
 #include "reflectree/formats/parameter_table.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "reflectree/error.hpp"
 #include "reflectree/text/edit_distance.hpp"
+#include "reflectree/text/number_text.hpp"
 
 namespace reflectree {
 namespace {
@@ -30,50 +30,6 @@ std::string repeated(std::vector<std::string> texts) {
   std::sort(texts.begin(), texts.end());
   const auto found = std::adjacent_find(texts.begin(), texts.end());
   return found == texts.end() ? "" : *found;
-}
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-// [+-]digits[.digits][e[+-]digits], the whole text, whatever the locale; fitted constants reach 1e92, beyond
-// a float. Good to a few roundings of a double.
-std::optional<double> parse_number(std::string_view text) {
-  std::size_t i = 0;
-  const auto sign = [&] {
-    const bool negative = i < text.size() && text[i] == '-';
-    if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
-    return negative;
-  };
-  const bool negative = sign();
-  double mantissa = 0;
-  int exponent = 0, digits = 0;
-  for (bool fraction = false; i < text.size() && (is_digit(text[i]) || (text[i] == '.' && !fraction)); ++i) {
-    if (text[i] == '.') {
-      fraction = true;
-      continue;
-    }
-    ++digits;
-    if (mantissa < 1e17) {
-      mantissa = mantissa * 10 + (text[i] - '0');
-      exponent -= fraction ? 1 : 0;
-    } else {
-      exponent += fraction ? 0 : 1;
-    }
-  }
-  if (digits == 0) return std::nullopt;
-  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
-    ++i;
-    const bool down = sign();
-    int e = 0;
-    const std::size_t first = i;
-    for (; i < text.size() && is_digit(text[i]); ++i) e = std::min(e * 10 + (text[i] - '0'), 9999);
-    if (i == first) return std::nullopt;
-    exponent += down ? -e : e;
-  }
-  // In two steps: 10^exponent alone may underflow where the number does not.
-  const int half = exponent / 2;
-  const double value = mantissa * std::pow(10.0, half) * std::pow(10.0, exponent - half);
-  if (i != text.size() || !std::isfinite(value)) return std::nullopt;
-  return negative ? -value : value;
 }
 
 }  // namespace

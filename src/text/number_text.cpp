@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/text/number_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <locale>
@@ -72,6 +73,46 @@ std::optional<float> take_number(std::string_view& text) {
   const float value = read(text.substr(0, length));
   text.remove_prefix(length);
   return value;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  std::size_t i = 0;
+  const auto sign = [&] {
+    const bool negative = i < text.size() && text[i] == '-';
+    if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+    return negative;
+  };
+  const bool negative = sign();
+  double mantissa = 0;
+  int exponent = 0, digits = 0;
+  for (bool fraction = false; i < text.size() && (is_digit(text[i]) || (text[i] == '.' && !fraction)); ++i) {
+    if (text[i] == '.') {
+      fraction = true;
+      continue;
+    }
+    ++digits;
+    if (mantissa < 1e17) {
+      mantissa = mantissa * 10 + (text[i] - '0');
+      exponent -= fraction ? 1 : 0;
+    } else {
+      exponent += fraction ? 0 : 1;
+    }
+  }
+  if (digits == 0) return std::nullopt;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    ++i;
+    const bool down = sign();
+    int e = 0;
+    const std::size_t first = i;
+    for (; i < text.size() && is_digit(text[i]); ++i) e = std::min(e * 10 + (text[i] - '0'), 9999);
+    if (i == first) return std::nullopt;
+    exponent += down ? -e : e;
+  }
+  // In two steps: 10^exponent alone may underflow where the number does not.
+  const int half = exponent / 2;
+  const double value = mantissa * std::pow(10.0, half) * std::pow(10.0, exponent - half);
+  if (i != text.size() || !std::isfinite(value)) return std::nullopt;
+  return negative ? -value : value;
 }
 
 }  // namespace reflectree

@@ -84,10 +84,10 @@ class Errors(ProgramTest):
 
     def test_what_stands_in_the_place_of_a_file_is_called_by_its_name(self):
         pull = "x.y: a Git LFS pointer; fetch the file with git lfs pull"
-        shade = "x.y: a WINDOW/Radiance BSDF XML file, a format that is not read; name "
+        speos = "x.y: a Speos surface file, a format that is not read; name "
         kinds = ((b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 3\n", pull),
                  (b"<!DOCTYPE html><html>404</html>", "x.y: an HTML page; fetch the file itself"),
-                 (b"<?xml version=\"1.0\"?>\n<WindowElement/>", shade),
+                 (b"OPTIS - brdf surface file v8.0\n", speos),
                  (b"PK\x03\x04x", "x.y: a ZIP archive; unpack it"),
                  (b"\x1f\x8b\x08x", "x.y: compressed by gzip; unpack it with gunzip"),
                  (b"", "x.y: empty; fetch the file again"))

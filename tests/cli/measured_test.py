@@ -69,6 +69,22 @@ class Measured(ProgramTest):
             self.assertGreater(facts["dark_share"][2], .01)
             self.assertEqual(facts["bridged_share"][2] > 0, member == "linear")
 
+    def test_a_zemax_file_tells_what_was_decided(self):
+        rows = "\n".join(".1 .1 .1 0" for _ in range(3))
+        self.write("m.bsdf", ("Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\n"
+                              "ScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 2\n10 60\nScatterAzimuth 3\n"
+                              "0 90 180\nScatterRadial 4\n0 20 60 90\nMonochrome\nDataBegin\n"
+                              f"TIS .2\n{rows}\nTIS .3\n{rows}\nDataEnd\n").encode())
+        (facts,) = self.json_of("info", "m.bsdf", *BUILD)["measured"]
+        self.assertEqual(facts["kind"], "Zemax BSDF of 1 rotation, 2 incidences, 3 azimuths and 4 radial angles")
+        self.assertEqual(facts["notes"][0], "wo is the file's incident direction")
+        self.assertGreater(facts["bridged_share"][0], 0)
+        text, _ = self.run_program("info", "m.bsdf", *BUILD)
+        self.assertIn("nothing was measured for theta_o below 10.0 deg", text)
+        self.assertIn("nothing was measured for theta_o beyond 60.0 deg", text)
+        self.assertRegex(text, r"bridged gaps +[0-9.]+ % of 20000 random pairs; most where")
+        self.assertIn("the last value before a gap or the horizon stands in up to it", text)
+
 
 if __name__ == "__main__":
     unittest.main()

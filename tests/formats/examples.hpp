@@ -31,9 +31,28 @@ inline std::vector<Bytes> example_files(std::string_view key) {
     synthetic::RglRecipe small;
     small.width = small.height = small.colours = small.nodes = 2;
     small.theta_o = {0.f, 1.5f};
-    files = {synthetic::rgl_file(), synthetic::rgl_file(small)};
+    synthetic::RglWideRecipe turned, spectral;
+    turned.width = turned.height = turned.colours = turned.nodes = 3;
+    turned.phi_o = synthetic::azimuths(3, 4);
+    spectral.width = spectral.height = spectral.colours = spectral.nodes = 2;
+    spectral.phi_o = {0}, spectral.wavelengths = {400, 500, 600, 700};
+    files = {synthetic::rgl_file(), synthetic::rgl_file(small), synthetic::rgl_wide_file(turned),
+             synthetic::rgl_wide_file(spectral)};
   }
   if (key == "merl") files = {synthetic::merl_start(180), synthetic::merl_start(360)};
+  if (key == "zemax") {
+    synthetic::ZemaxRecipe flat, coloured;
+    flat.symmetry = "PlaneSymmetrical";
+    flat.rotation = {0}, flat.azimuth = {0, 90, 180};
+    coloured.content = "XYZ";
+    coloured.rotation = {0}, coloured.incidence = {30}, coloured.azimuth = {0, 180, 360};
+    files = {synthetic::zemax_file(), synthetic::zemax_file(flat), synthetic::zemax_file(coloured)};
+  }
+  if (key == "klems") {
+    synthetic::KlemsRecipe rows;
+    rows.structure = "Rows", rows.wavelengths = {"Solar", "Visible"};
+    files = {synthetic::klems_file(), synthetic::klems_file(rows)};
+  }
   if (key == "table") {
     files = {synthetic::as_bytes(synthetic::neural_csv()), synthetic::as_bytes(synthetic::sgd_csv()),
              synthetic::as_bytes(synthetic::abc_csv())};

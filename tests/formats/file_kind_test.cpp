@@ -46,7 +46,7 @@ TEST(FileKind, TellsWhatItIs) {
                            "<!-- a page -->\n<HTML>", "<?xml version=\"1.0\"?>\n<html xmlns=\"x\">"}) {
     EXPECT_EQ(kind_of(html), "an HTML page") << html;
   }
-  const std::string window = "a WINDOW/Radiance BSDF XML file, a format that is not read";
+  const std::string window = "a measured material (WINDOW/Radiance BSDF XML)";
   EXPECT_EQ(kind_of(window_xml), window);
   EXPECT_EQ(kind_of("Recover using: a command\n" + window_xml), window);
   EXPECT_EQ(kind_of("<!--" + std::string(30000, 'x') + "-->" + window_xml), window);
@@ -59,7 +59,7 @@ TEST(FileKind, TellsWhatItIs) {
   EXPECT_EQ(kind_of("II*\0x"s), "a TIFF picture");
   EXPECT_EQ(kind_of(std::string(1000, '\0')), "nothing but zeros");
   EXPECT_EQ(kind_of("#x\nSymmetry  Asymmetrical\nScatterType  BRDF\nSampleRotation  1\n"),
-            "a Zemax BSDF, a format that is not read");
+            "a measured material (Zemax .bsdf)");
 }
 
 TEST(FileKind, CallsMaterialsByTheirFormat) {
@@ -93,7 +93,10 @@ TEST(FileKind, EveryReaderSaysIt) {
   EXPECT_NE(error_of([&] { read_image(page); }).find("sky.hdr: an HTML page; fetch the file itself"),
             std::string::npos);
   EXPECT_EQ(error_of([&] { load_brdf(window); }),
-            window + ": a WINDOW/Radiance BSDF XML file, a format that is not read; name " + format_names());
+            window + ": line 4: <Optical> without <Layer>; mend the line or fetch the file again");
+  EXPECT_EQ(
+      error_of([&] { load_sampler(window); }),
+      window + ": a measured material (WINDOW/Radiance BSDF XML); name a file that 'reflectree build' saved");
   EXPECT_EQ(error_of([&] { load_sampler(nothing); }), nothing + ": empty; fetch the file again");
   for (const char* inside : {"", "."}) {
     const std::string path = folder / inside;
@@ -108,12 +111,12 @@ TEST(FileKind, KnowsTheSharedFiles) {
   int windows = 0, zemax = 0;
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/radiance_xml")) {
     const std::string kind(recognise_file(read_file(entry.path().string(), 1U << 30U)).what);
-    EXPECT_EQ(kind.rfind("a WINDOW/Radiance BSDF XML file", 0), 0U) << entry.path() << kind;
+    EXPECT_EQ(kind, "a measured material (WINDOW/Radiance BSDF XML)") << entry.path();
     ++windows;
   }
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/zemax")) {
     const std::string kind(recognise_file(read_file(entry.path().string(), 1U << 30U)).what);
-    EXPECT_EQ(kind.rfind("a Zemax BSDF", 0), 0U) << entry.path() << kind;
+    EXPECT_EQ(kind, "a measured material (Zemax .bsdf)") << entry.path();
     ++zemax;
   }
   EXPECT_EQ(windows, 7);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "measured_data.hpp"
+#include "reference_values.hpp"
 #include "reflectree/brdf/models/sgd.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
@@ -19,23 +19,8 @@ namespace {
 
 // |f - reference| / (|reference| + 1e-3), sorted, over pairs that do not graze.
 std::vector<double> errors_of(const std::string& file, const std::string& material, bool swap = false) {
-  const TemporaryFolder folder("fits");
   const Pairs pairs = random_pairs(500, 0.3f, 21);
-  Bytes raw;
-  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
-    for (const Direction& w : {pairs.wo[i], pairs.wi[i]}) {
-      append_f32(raw, w.x);
-      append_f32(raw, w.y);
-      append_f32(raw, w.z);
-    }
-  }
-  write_file_atomically(folder / "pairs", raw);
-  const std::string command = std::string("python3 \"") + REFLECTREE_SOURCE + "/fits_reference.py\" \"" +
-                              file + "\" " + material + " \"" + (folder / "pairs") + "\" \"" +
-                              (folder / "out") + "\"";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("the reference failed: " + command);
-  const Bytes result = read_file(folder / "out", 1U << 24U);
-  ByteReader reference(result, "out");
+  const std::vector<double> reference = reference_values("fits_reference.py", {file, material}, pairs);
   const AnyBrdf f = load_brdf(file, material);
   std::vector<float> values(pairs.wo.size() * 3);
   f.eval(swap ? pairs.wi : pairs.wo, swap ? pairs.wo : pairs.wi, values);
@@ -43,7 +28,7 @@ std::vector<double> errors_of(const std::string& file, const std::string& materi
   for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
     double difference = 0, size = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double wanted = reference.f64();
+      const double wanted = reference[3 * i + c];
       difference = std::max(difference, std::abs(double(values[3 * i + c]) - wanted));
       size = std::max(size, wanted);
     }

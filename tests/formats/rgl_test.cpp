@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 
 #include "measured_data.hpp"
+#include "reference_values.hpp"
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
@@ -257,27 +257,10 @@ Reference renderer_values(const std::string& material) {
   return reference;
 }
 
-// Runs rgl_reference.py; empty where there is no interpreter with NumPy.
-std::vector<double> numpy_values(const std::string& file, const Pairs& pairs, const TemporaryFolder& folder) {
+// Empty where there is no interpreter with NumPy.
+std::vector<double> numpy_values(const std::string& file, const Pairs& pairs) {
   if (std::string(REFLECTREE_PYTHON).empty()) return {};
-  Bytes raw;
-  for (std::size_t i = 0; i < pairs.wo.size(); ++i) {
-    for (const Direction& w : {pairs.wo[i], pairs.wi[i]}) {
-      append_f32(raw, w.x);
-      append_f32(raw, w.y);
-      append_f32(raw, w.z);
-    }
-  }
-  write_file_atomically(folder / "pairs", raw);
-  const std::string command = std::string("\"") + REFLECTREE_PYTHON + "\" \"" + REFLECTREE_SOURCE +
-                              "/rgl_reference.py\" \"" + file + "\" \"" + (folder / "pairs") + "\" \"" +
-                              (folder / "values") + "\"";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("the reference failed: " + command);
-  const Bytes result = read_file(folder / "values", 1U << 28U);
-  ByteReader reader(result, "values");
-  std::vector<double> values(result.size() / 8);
-  for (double& v : values) v = reader.f64();
-  return values;
+  return reference_values("rgl_reference.py", {file}, pairs, {}, REFLECTREE_PYTHON);
 }
 
 // |f cos_i - reference| / (|reference| + 1e-3), the worst channel, sorted, with references below 0 read as 0;
@@ -310,7 +293,7 @@ TEST(Rgl, SyntheticFileAgreesWithNumpy) {
   const TemporaryFolder folder("rgl");
   write_file_atomically(folder / "m.bsdf", synthetic::rgl_file());
   const Pairs pairs = random_pairs(20000, 0.1f, 7);
-  const std::vector<double> reference = numpy_values(folder / "m.bsdf", pairs, folder);
+  const std::vector<double> reference = numpy_values(folder / "m.bsdf", pairs);
   if (reference.empty()) GTEST_SKIP() << "no python3 with numpy";
   const RglTable table = read_rgl(read_file(folder / "m.bsdf", max_rgl_bytes), "m");
   expect_close(errors(table, pairs, reference), "synthetic");
@@ -318,7 +301,6 @@ TEST(Rgl, SyntheticFileAgreesWithNumpy) {
 
 TEST(Rgl, MeasuredFilesAgreeWithNumpyAndAnotherRenderer) {
   if (measured_data().empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
-  const TemporaryFolder folder("rgl");
   const Pairs pairs = random_pairs(100000, 0.1f, 7);
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(measured_data() + "/rgl")) {
@@ -347,7 +329,7 @@ TEST(Rgl, MeasuredFilesAgreeWithNumpyAndAnotherRenderer) {
     EXPECT_LT(worst_signed, 1e-3) << material;
     EXPECT_GT(worst_swapped, 0.1) << material << ": swapped arguments must show";
 
-    const std::vector<double> reference = numpy_values(file, pairs, folder);
+    const std::vector<double> reference = numpy_values(file, pairs);
     if (!reference.empty()) expect_close(errors(table, pairs, reference), material);
   }
   EXPECT_EQ(files, 16);

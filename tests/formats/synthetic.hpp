@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <utility>
@@ -97,6 +98,70 @@ inline std::vector<Field> rgl_fields(const RglRecipe& r) {
 
 inline Bytes rgl_file(const RglRecipe& recipe = {}) { return tensor_file(rgl_fields(recipe)); }
 
+// A material of several azimuths, or of several wavelengths; p is the index of phi_o.
+struct RglWideRecipe {
+  std::vector<float> phi_o, theta_o{0.f, 0.5f, 1.1f, 1.5707964f}, wavelengths;  // none: RGB
+  std::function<float(float u, float v)> sigma = [](float u, float v) { return 1 - 0.7f * u + 0.1f * v; };
+  std::function<float(float u, float v)> ndf = [](float u, float v) {
+    return 0.3f + 2 * (1 - u) + v * (1 - v);
+  };
+  std::function<float(int p, int t, float u, float v)> vndf = [](int p, int t, float u, float v) {
+    return 1 + 0.3f * float(t) * u + std::cos(6.2831853f * v + 0.4f * float(p)) * (1 - u);
+  };
+  std::function<float(int p, int t, int c, float x, float y)> colour = [](int p, int t, int c, float x,
+                                                                          float y) {
+    return 0.2f + 0.1f * float(c % 7) + 0.05f * float(t) * x + 0.3f * y * (1 - x) + 0.02f * float(p) * x;
+  };
+  int width = 11, height = 9, colours = 5, nodes = 8;
+  bool jacobian = true;
+};
+// `count` nodes from -pi over a turn divided by `reduction`.
+inline std::vector<float> azimuths(int count, int reduction) {
+  std::vector<float> phi;
+  const double pi_d = 3.14159265358979323846;
+  for (int i = 0; i < count; ++i)
+    phi.push_back(float(-pi_d + 2 * pi_d / reduction * double(i) / double(count - 1)));
+  return phi;
+}
+inline std::vector<Field> rgl_wide_fields(const RglWideRecipe& r) {
+  const auto at = [](int i, int n) { return float(i) / float(n - 1); };
+  const bool spectral = !r.wavelengths.empty();
+  const int channels = spectral ? int(r.wavelengths.size()) : 3;
+  std::vector<float> sigma, ndf, vndf, colours;
+  for (int y = 0; y < r.nodes; ++y) {
+    for (int x = 0; x < r.nodes; ++x) {
+      sigma.push_back(r.sigma(at(x, r.nodes), at(y, r.nodes)));
+      ndf.push_back(r.ndf(at(x, r.nodes), at(y, r.nodes)));
+    }
+  }
+  for (int p = 0; p < int(r.phi_o.size()); ++p) {
+    for (int t = 0; t < int(r.theta_o.size()); ++t) {
+      for (int y = 0; y < r.height; ++y) {
+        for (int x = 0; x < r.width; ++x) vndf.push_back(r.vndf(p, t, at(x, r.width), at(y, r.height)));
+      }
+      for (int c = 0; c < channels; ++c) {
+        for (int y = 0; y < r.colours; ++y) {
+          for (int x = 0; x < r.colours; ++x)
+            colours.push_back(r.colour(p, t, c, at(x, r.colours), at(y, r.colours)));
+        }
+      }
+    }
+  }
+  const std::uint64_t n_p = r.phi_o.size(), n_t = r.theta_o.size(), w = std::uint64_t(r.width),
+                      h = std::uint64_t(r.height), m = std::uint64_t(r.colours), k = std::uint64_t(r.nodes);
+  std::vector<Field> fields{
+      floats("phi_i", {n_p}, r.phi_o),
+      floats("theta_i", {n_t}, r.theta_o),
+      floats("sigma", {k, k}, sigma),
+      floats("ndf", {k, k}, ndf),
+      floats("vndf", {n_p, n_t, h, w}, vndf),
+      floats(spectral ? "spectra" : "rgb", {n_p, n_t, std::uint64_t(channels), m, m}, colours),
+      Field{"jacobian", 1, {1}, {std::uint8_t(r.jacobian)}}};
+  if (spectral) fields.push_back(floats("wavelengths", {r.wavelengths.size()}, r.wavelengths));
+  return fields;
+}
+inline Bytes rgl_wide_file(const RglWideRecipe& recipe) { return tensor_file(rgl_wide_fields(recipe)); }
+
 inline Bytes as_bytes(const std::string& text) { return {text.begin(), text.end()}; }
 
 // A network of two materials, `one` and `two`, with weights from a small congruence.
@@ -135,5 +200,104 @@ inline std::string abc_csv() {
   return "material,kd_r,kd_g,kd_b,A_r,A_g,A_b,B,C,ior\nbronze,0.025,0.022,0.016,51.7,37.9,27.4,10482.13,0."
          "8167,2.2365\n";
 }
+
+// A Zemax .bsdf of angles in degrees; value(curve, rotation, incidence, azimuth, radial) in radians.
+struct ZemaxRecipe {
+  std::string symmetry = "Asymmetrical4D", content = "Monochrome", type = "BRDF";
+  std::vector<double> rotation{0, 120, 240, 360}, incidence{10, 50}, azimuth{0, 90, 180, 270, 360},
+      radial{0, 20, 60, 100};
+  std::function<double(int c, double r, double i, double a, double s)> value = [](int c, double r, double i,
+                                                                                  double a, double s) {
+    return 0.3 + 0.1 * c + 0.1 * std::cos(r) + 0.05 * std::sin(a + i) * std::sin(s);
+  };
+};
+inline std::string zemax_text(const ZemaxRecipe& r) {
+  constexpr double degree = 3.14159265358979323846 / 180;
+  char number[32];
+  const auto printed = [&number](double v) {
+    std::snprintf(number, sizeof number, "%.9g", v);
+    return std::string(number);
+  };
+  const auto list = [&](const char* name, const std::vector<double>& angles) {
+    std::string text = std::string(name) + "\t" + std::to_string(angles.size()) + "\r\n";
+    for (const double a : angles) text += printed(a) + "\t";
+    return text + "\r\n";
+  };
+  std::string text = "# made by a test\r\nSource\tMeasured\r\nSymmetry\t" + r.symmetry +
+                     "\r\nSpectralContent  " + r.content + "\r\nScatterType " + r.type + "\r\n" +
+                     list("SampleRotation", r.rotation) + list("AngleOfIncidence", r.incidence) +
+                     list("ScatterAzimuth", r.azimuth) + list("ScatterRadial", r.radial) + "\r\n";
+  const bool xyz = r.content == "XYZ";
+  for (int c = 0; c < (xyz ? 3 : 1); ++c) {
+    text += (xyz ? std::string("Tristimulus") + "XYZ"[c] : "Monochrome") + "\r\nDataBegin\r\n";
+    for (const double rotation : r.rotation) {
+      for (const double incidence : r.incidence) {
+        text += "TIS\t0.5\r\n";
+        for (const double azimuth : r.azimuth) {
+          for (const double radial : r.radial)
+            text += printed(r.value(c, rotation * degree, incidence * degree, azimuth * degree,
+                                    radial * degree)) +
+                    "\t";
+          text += "\r\n";
+        }
+      }
+    }
+    text += "DataEnd\r\n";
+  }
+  return text;
+}
+inline Bytes zemax_file(const ZemaxRecipe& recipe = {}) { return as_bytes(zemax_text(recipe)); }
+
+// A BSDF XML of one basis; value(wavelength, front, in, out) in sr^-1.
+struct KlemsRecipe {
+  std::string structure = "Columns", basis = "LBNL/Test";
+  bool defined = true;  // the basis in the file
+  std::vector<double> theta{0, 20, 60, 90};
+  std::vector<int> patches{1, 4, 6};
+  std::vector<std::string> wavelengths{"Visible"},
+      directions{"Transmission Front", "Reflection Back", "Reflection Front"};
+  std::function<double(int w, bool front, int in, int out)> value = [](int w, bool front, int in, int out) {
+    return 0.01 * w + (front ? 0.1 : 0.2) + 0.001 * in + 0.0001 * out;
+  };
+};
+inline std::string klems_xml(const KlemsRecipe& r) {
+  int size = 0;
+  for (const int n : r.patches) size += n;
+  std::string text =
+      "Recover using: a command\n<?xml version=\"1.0\"?>\n<!-- by a <test> -->\n<WindowElement xmlns='x'>\n"
+      "<Optical><Layer>\n<Material><Name>cloth &amp; paint</Name><Thickness unit=\"Meter\"/></Material>\n"
+      "<DataDefinition><IncidentDataStructure>" +
+      r.structure + "</IncidentDataStructure>\n";
+  if (r.defined) {
+    text += "<AngleBasis><AngleBasisName>" + r.basis + "</AngleBasisName>\n";
+    for (std::size_t i = 0; i < r.patches.size(); ++i) {
+      text += "<AngleBasisBlock><Theta>0</Theta><nPhis>" + std::to_string(r.patches[i]) +
+              "</nPhis><ThetaBounds><LowerTheta>" + std::to_string(r.theta[i]) + "</LowerTheta><UpperTheta>" +
+              std::to_string(r.theta[i + 1]) + "</UpperTheta></ThetaBounds></AngleBasisBlock>\n";
+    }
+    text += "</AngleBasis>\n";
+  }
+  text += "</DataDefinition>\n";
+  for (std::size_t w = 0; w < r.wavelengths.size(); ++w) {
+    text += "<WavelengthData><Wavelength unit=\"Integral\">" + r.wavelengths[w] + "</Wavelength>\n";
+    for (const std::string& direction : r.directions) {
+      text += "<WavelengthDataBlock><WavelengthDataDirection>" + direction +
+              "</WavelengthDataDirection><ColumnAngleBasis>" + r.basis +
+              "</ColumnAngleBasis><RowAngleBasis>" + r.basis + "</RowAngleBasis>\n<ScatteringData>\n";
+      for (int row = 0; row < size; ++row) {
+        for (int column = 0; column < size; ++column) {
+          const bool rows = r.structure == "Rows", front = direction.ends_with("Front");
+          const double v = r.value(int(w), front, rows ? row : column, rows ? column : row);
+          text += std::to_string(v) + (row % 2 ? ", " : "\t");
+        }
+        text += "\n";
+      }
+      text += "</ScatteringData></WavelengthDataBlock>\n";
+    }
+    text += "</WavelengthData>\n";
+  }
+  return text + "</Layer></Optical></WindowElement>\n";
+}
+inline Bytes klems_file(const KlemsRecipe& recipe = {}) { return as_bytes(klems_xml(recipe)); }
 
 }  // namespace reflectree::synthetic

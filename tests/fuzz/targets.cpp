@@ -30,6 +30,8 @@ void require_sound(const AnyBrdf& f) {
 
 void run_rgl(ByteView bytes) {
   expect_error_or_success([&] { require_sound(read_rgl(bytes, "rgl")); });
+  for (const char* member : {"", "rgb"})
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "rgl", member)); });
 }
 
 // The header as it comes; behind a good one, for one input in 64, the rest repeated up to the length that the
@@ -50,6 +52,18 @@ void run_merl(ByteView bytes) {
     table.lookup = TableLookup::linear;
     require_sound(table);
   });
+}
+
+void run_zemax(ByteView bytes) {
+  for (const char* member : {"", "zeros", "rgb-zeros", "y"})
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "zemax", member)); });
+  expect_error_or_success([&] { measured_facts(bytes, "zemax"); });
+}
+
+void run_klems(ByteView bytes) {
+  for (const char* member : {"", "back", "solar-front"})
+    expect_error_or_success([&] { require_sound(read_brdf(bytes, "klems", member)); });
+  expect_error_or_success([&] { measured_facts(bytes, "klems"); });
 }
 
 void run_table(ByteView bytes) {
@@ -115,6 +129,8 @@ void run_sampler(ByteView bytes) {
 
 std::vector<Bytes> rgl_seeds() { return example_files("rgl"); }
 std::vector<Bytes> merl_seeds() { return example_files("merl"); }
+std::vector<Bytes> zemax_seeds() { return example_files("zemax"); }
+std::vector<Bytes> klems_seeds() { return example_files("klems"); }
 std::vector<Bytes> table_seeds() { return example_files("table"); }
 std::vector<Bytes> material_seeds() {  // of every format of the table
   std::vector<Bytes> seeds;
@@ -141,6 +157,8 @@ std::vector<Bytes> grammar_seeds() {
 std::span<const Target> targets() {
   static const Target all[] = {{"rgl", run_rgl, rgl_seeds},
                                {"merl", run_merl, merl_seeds},
+                               {"zemax", run_zemax, zemax_seeds},
+                               {"klems", run_klems, klems_seeds},
                                {"table", run_table, table_seeds},
                                {"material", run_material, material_seeds},
                                {"sampler", run_sampler, sampler_seeds},

@@ -21,6 +21,8 @@ struct MeasuredFacts {
   // the file does not say.
   std::vector<float> theta_o;
   std::vector<std::uint64_t> negative_at;
+  int channels = 3;                // 1: all that is told by channel is the same for the three
+  std::vector<std::string> notes;  // what the reader decided where the format leaves it open, in words
 
   // Of `pairs` random pairs of directions, half of them near the mirror direction: how many in each channel
   // have a value below 0, which counts as 0; have a value in which measured neighbours stand in for missing

@@ -15,4 +15,8 @@ std::string shortest_text(float x);
 // does not start with a number. Beyond the range of float: infinite, or zero.
 std::optional<float> take_number(std::string_view& text);
 
+// The number that the whole text is, [+-]digits[.digits][e[+-]digits], good to a few roundings of a double;
+// nullopt for anything else, and beyond the range of a double.
+std::optional<double> parse_number(std::string_view text);
+
 }  // namespace reflectree

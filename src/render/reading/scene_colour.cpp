@@ -8,7 +8,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "lights/cie_tables.hpp"
+#include "reflectree/math/cie_1931.hpp"
 
 namespace reflectree::render {
 

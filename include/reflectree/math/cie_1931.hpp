@@ -3,7 +3,7 @@
 // (CIE 15:2004, tables T.4 and T.1).
 #pragma once
 
-namespace reflectree::render {
+namespace reflectree {
 
 struct CieRow {
   int nm;
@@ -107,4 +107,4 @@ inline constexpr CieRow cie_1931[] = {{360, {0.0001299, 3.917e-06, 0.0006061}, 4
                                       {825, {1.776509e-06, 6.4153e-07, 0}, 58.8765},
                                       {830, {1.251141e-06, 4.5181e-07, 0}, 60.3125}};
 
-}  // namespace reflectree::render
+}  // namespace reflectree

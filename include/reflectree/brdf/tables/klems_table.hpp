@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// A BRDF that is constant over patches of the hemisphere: the matrices of Klems 1994, "A New Method for
+// Predicting the Solar Heat Gain of Complex Fenestration Systems", in the files of WINDOW and Radiance.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reflectree/brdf/brdf.hpp"
+
+namespace reflectree {
+
+// Rings about the normal, cut into equal patches. Patch 0 of a ring is centred at azimuth 0; patches count
+// counter-clockwise, rings from the normal outwards.
+class KlemsBasis {
+ public:
+  KlemsBasis() = default;
+  // theta: radians, where rings begin and the last one ends, ascending from 0; patches: as many as rings.
+  KlemsBasis(const std::vector<double>& theta, const std::vector<int>& patches);
+
+  int size() const { return size_; }
+  // The patch of a direction with z > 0, -1 beyond the last ring.
+  int patch_of(Direction w) const;
+  // In radians.
+  const std::vector<float>& ring_borders() const { return theta_; }
+  // The measure of a patch: its projected solid angle.
+  double projected_solid_angle(int patch) const;
+
+ private:
+  std::vector<float> theta_, cos_theta_;  // one more than rings
+  std::vector<int> patches_, first_;
+  int size_ = 0;
+};
+
+// f(wo, wi) in sr^-1 with wo the file's incident direction, 0 outside of the rings. The matrix counts
+// incident azimuths from the opposite side, so that light that goes straight on keeps its number.
+struct KlemsTable {
+  std::string name = "klems";
+  KlemsBasis incident, exiting;
+  // Azimuths of the file are seen through the layer: x points the other way on this side; y does not.
+  bool seen_through = false;
+  std::vector<float> values;  // [incident][exiting], not negative
+
+  float operator()(const ShadingGeometry<float>& g) const;
+  BrdfTraits traits() const;
+};
+
+}  // namespace reflectree
