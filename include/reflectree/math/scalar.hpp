@@ -12,9 +12,11 @@
 #if defined(__GNUC__) || defined(__clang__)
 #define REFLECTREE_INLINE [[gnu::always_inline]] inline
 #define REFLECTREE_INLINE_LAMBDA __attribute__((always_inline))
+#define REFLECTREE_NOINLINE [[gnu::noinline]]
 #else
 #define REFLECTREE_INLINE inline
 #define REFLECTREE_INLINE_LAMBDA
+#define REFLECTREE_NOINLINE
 #endif
 
 namespace reflectree {

@@ -60,7 +60,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
                   std::span<DirectionSample<ValueOf<F>>> out) {
   assert(out.size() == wo.size());
   const PackedSampler& packed = sampler.packed();
-  detail::TrialBlock block(sampler.evaluates_turned());
+  detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
     for (std::size_t i = 0; i < wo.size();) {
@@ -88,7 +88,7 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
   const bool half = packed.domain.half();
-  detail::TrialBlock block(sampler.evaluates_turned());
+  detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   constexpr std::size_t side_by_side = 8;
   struct Started {
@@ -138,7 +138,7 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
   assert(out.size() == wo.size());
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
-  detail::TrialBlock b(sampler.evaluates_turned());
+  detail::TrialBlock b(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   struct Pending {
     Incidence in;

@@ -49,9 +49,11 @@ struct alignas(64) TrialBlock {
   float at[field_count][block_size];
   std::uint32_t index[block_size];  // in the batch
   std::size_t count = 0;
-  bool keep_known;  // f is evaluated in the caller's frame (known_geometry in incidence.hpp)
+  bool keep_known;   // f is evaluated in the caller's frame (known_geometry in incidence.hpp)
+  bool anisotropic;  // viewers are folded, and the domain may lie in the frame of the surface
 
-  explicit TrialBlock(bool evaluates_turned) : keep_known(!evaluates_turned) {}
+  TrialBlock(bool evaluates_turned, bool is_anisotropic)
+      : keep_known(!evaluates_turned), anisotropic(is_anisotropic) {}
 
   bool full() const { return count == block_size; }
   Lanes lanes(Field field, std::size_t k) const { return Lanes::load(at[field] + k); }
@@ -62,11 +64,10 @@ struct alignas(64) TrialBlock {
     const std::size_t k = count++;
     index[k] = std::uint32_t(i);
     at[wo_x][k] = in.wo.x;
-    at[wo_y][k] = in.wo.y;
     at[cos_theta_o][k] = in.wo.z;
     at[cos_phi][k] = in.cos_phi;
     at[sin_phi][k] = in.sin_phi;
-    at[side][k] = in.side;
+    if (anisotropic) at[wo_y][k] = in.wo.y, at[side][k] = in.side;
     at[albedo][k] = in.albedo;
     if (keep_known) at[known_x][k] = in.known.x, at[known_y][k] = in.known.y, at[known_z][k] = in.known.z;
     const LeafCell<float> cell = unpack(leaf, half);
@@ -114,7 +115,7 @@ REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Value
     Lanes tx = lanes(Field::across_x);
     if constexpr (across_x == AcrossX::uniform) tx = sample_linear(cell.slope_x, tx);
     const PointInLeafT<Lanes> at = point_at(cell, tx, sample_linear(cell.slope_y, lanes(Field::across_y)));
-    const bool surface = domain.follows_surface();
+    const bool surface = b.anisotropic && domain.follows_surface();
     const Vec3<Lanes> wo{lanes(Field::wo_x), surface ? lanes(Field::wo_y) : Lanes(0),
                          lanes(Field::cos_theta_o)};
     const DomainPointT<Lanes> point =
@@ -122,7 +123,7 @@ REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Value
     const Vec3<Lanes>& wi = point.geometry.wi;
     const Lanes cos_phi = lanes(Field::cos_phi), sin_phi = lanes(Field::sin_phi);
     const auto turn_back = [&](const Vec3<Lanes>& w) {
-      const Lanes y = b.keep_known ? flip_sign(w.y, lanes(Field::side)) : w.y;
+      const Lanes y = b.anisotropic ? flip_sign(w.y, lanes(Field::side)) : w.y;
       return Vec3<Lanes>{w.x * cos_phi - y * sin_phi, w.x * sin_phi + y * cos_phi, w.z};
     };
     const Vec3<Lanes> drawn = turn_back(wi);

@@ -31,4 +31,15 @@ SlabTree::SlabTree(const Partition& partition) {
   }
 }
 
+std::size_t SlabTree::operator()(float cos_theta_o, float phi_o) const {
+  std::uint32_t i = 0;
+  while (nodes_[i].axis != leaf) {
+    const Node& node = nodes_[i];
+    // theta_o grows where its cosine falls; borders belong to the upper slab.
+    const bool upper = node.axis == 0 ? cos_theta_o <= node.split : phi_o >= node.split;
+    i = upper ? node.upper : i + 1;
+  }
+  return nodes_[i].upper;
+}
+
 }  // namespace reflectree

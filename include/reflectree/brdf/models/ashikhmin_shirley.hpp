@@ -22,7 +22,7 @@ struct AshikhminShirley {
     // at the pole, where the power is 1 whatever e is.
     const T s2 = sin2_theta(g.wh);
     const T tan2 = s2 / max(sqr(g.cos_theta_h), T(1e-18));
-    const Vec3<T> wh = in_frame_of(phi, g).wh;
+    const Vec3<T> wh = in_frame_of(phi, g.wh);
     const T mean = (T(n_x) * sqr(wh.x) + T(n_y) * sqr(wh.y)) / max(s2, T(1e-30));
     const T exponent = clamp(mean, min(T(n_x), T(n_y)), max(T(n_x), T(n_y)));
     const T power = exp(T(-0.5) * exponent * log1p(tan2));

@@ -48,7 +48,7 @@ struct CookTorrance {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T d = alpha.round() ? beckmann_distribution(g.wh, T(alpha.x))
-                              : beckmann_distribution(in_frame_of(phi, g).wh, alpha);
+                              : beckmann_distribution(in_frame_of(phi, g.wh), alpha);
     const T lobe = d * v_cavity_visibility(g);
     return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * (as_rgb<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
   }

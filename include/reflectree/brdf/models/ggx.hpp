@@ -40,20 +40,27 @@ T ggx_visibility(T cos_theta_o, T cos_theta_i, T alpha) {
 
 // The same with two widths: alpha^2 sin^2 theta becomes alpha_x^2 x^2 + alpha_y^2 y^2.
 template <class T>
-T ggx_visibility(const ShadingGeometry<T>& g, Widths alpha) {
+T ggx_visibility(Vec3<T> wo, Vec3<T> wi, Widths alpha) {
   const auto widened = [&](const Vec3<T>& w) {
     return sqrt(sqr(w.z) + sqr(T(alpha.x) * w.x) + sqr(T(alpha.y) * w.y));
   };
-  return T(0.5) / (g.cos_theta_o * widened(g.wi) + g.cos_theta_i * widened(g.wo));
+  return T(0.5) / (wo.z * widened(wi) + wi.z * widened(wo));
 }
-// D and G2 / (4 cos_o cos_i).
+// D and G2 / (4 cos_o cos_i) of a surface whose x axis lies at an azimuth.
 template <class T>
 struct GgxLobe {
   T distribution, visibility;
 };
+// Out of line: the round lobe, which most are, stays small enough to vanish in the loop that samples it.
 template <class T>
-GgxLobe<T> ggx_lobe(const ShadingGeometry<T>& g, Widths alpha) {
-  if (!alpha.round()) return {ggx_distribution(g.wh, alpha), ggx_visibility(g, alpha)};
+REFLECTREE_NOINLINE GgxLobe<T> ggx_elliptic_lobe(const ShadingGeometry<T>& g, Widths alpha,
+                                                 const Azimuth& phi) {
+  return {ggx_distribution(in_frame_of(phi, g.wh), alpha),
+          ggx_visibility(in_frame_of(phi, g.wo), in_frame_of(phi, g.wi), alpha)};
+}
+template <class T>
+REFLECTREE_INLINE GgxLobe<T> ggx_lobe(const ShadingGeometry<T>& g, Widths alpha, const Azimuth& phi) {
+  if (!alpha.round()) return ggx_elliptic_lobe(g, alpha, phi);
   return {ggx_distribution(g.wh, T(alpha.x)), ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha.x))};
 }
 
@@ -65,7 +72,7 @@ struct Ggx {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    const GgxLobe<T> lobe = ggx_lobe(in_frame_of(phi, g), alpha);
+    const GgxLobe<T> lobe = ggx_lobe(g, alpha, phi);
     return lobe.distribution * lobe.visibility * fresnel_schlick(f0, g.cos_theta_d);
   }
 

@@ -18,7 +18,7 @@ struct Plastic {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T f = T(f0);
-    const GgxLobe<T> lobe = ggx_lobe(in_frame_of(phi, g), alpha);
+    const GgxLobe<T> lobe = ggx_lobe(g, alpha, phi);
     const T coat = (f + (T(1) - f) * schlick_power(g.cos_theta_d)) * lobe.distribution * lobe.visibility;
     // 1 - F(c) = (1 - f0) (1 - (1 - c)^5).
     const T base =

@@ -18,7 +18,7 @@ struct Ward {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T hz2 = max(sqr(g.cos_theta_h), T(1e-18));  // keeps hz^4 a normal float
-    const Vec3<T> wh = in_frame_of(phi, g).wh;
+    const Vec3<T> wh = in_frame_of(phi, g.wh);
     const T slope2 = (sqr(wh.x / T(alpha_x)) + sqr(wh.y / T(alpha_y))) / hz2;
     const T scale = T(1) / (T(4) * pi_v<T> * T(alpha_x) * T(alpha_y));
     const T lobe = scale * exp(-slope2) / (sqr(g.cos_theta_d) * sqr(hz2));

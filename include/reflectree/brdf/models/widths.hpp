@@ -25,14 +25,12 @@ struct Azimuth {
         sine(the_degrees == 0 ? 0.f : float(std::sin(double(the_degrees) * pi_v<double> / 180))) {}
 };
 
-// The same pair of directions in the frame of the model.
+// w in the frame of the model.
 template <class T>
-ShadingGeometry<T> in_frame_of(const Azimuth& azimuth, const ShadingGeometry<T>& g) {
-  if (azimuth.degrees == 0) return g;
+Vec3<T> in_frame_of(const Azimuth& azimuth, const Vec3<T>& w) {
+  if (azimuth.degrees == 0) return w;
   const T c = T(azimuth.cosine), s = T(azimuth.sine);
-  const auto turned = [&](const Vec3<T>& w) { return Vec3<T>{c * w.x + s * w.y, c * w.y - s * w.x, w.z}; };
-  return {turned(g.wo),  turned(g.wi),  turned(g.wh), g.cos_theta_o,
-          g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
+  return {c * w.x + s * w.y, c * w.y - s * w.x, w.z};
 }
 
 }  // namespace reflectree

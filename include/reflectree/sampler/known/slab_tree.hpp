@@ -16,16 +16,7 @@ class SlabTree {
   // Coordinate 0 is theta_o, coordinate 1 phi_o, radians.
   explicit SlabTree(const Partition& partition);
   bool empty() const { return nodes_.empty(); }
-  std::size_t operator()(float cos_theta_o, float phi_o) const {
-    std::uint32_t i = 0;
-    while (nodes_[i].axis != leaf) {
-      const Node& node = nodes_[i];
-      // theta_o grows where its cosine falls; borders belong to the upper slab.
-      const bool upper = node.axis == 0 ? cos_theta_o <= node.split : phi_o >= node.split;
-      i = upper ? node.upper : i + 1;
-    }
-    return nodes_[i].upper;
-  }
+  std::size_t operator()(float cos_theta_o, float phi_o) const;
   std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
 
  private:
