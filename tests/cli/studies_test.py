@@ -44,7 +44,7 @@ class StudyPaper(ProgramTest):
 
 
 class StudyPictures(ProgramTest):
-    SCENES = pathlib.Path(__file__).parents[2] / "bench" / "study" / "scenes"
+    SCENES = pathlib.Path(__file__).parents[2] / "bench" / "studies" / "scenes"
     SMALL = ["--quick", "--seeds", "2", "--other-seeds", "1", "--reference", "32", "--only", "retro", "--parts", "path"]
 
     def start(self, *args):

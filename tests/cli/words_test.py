@@ -57,13 +57,13 @@ class List(ProgramTest):
     def test_shows_models_with_class_and_ranges(self):
         text, _ = self.run_program("list")
         self.assertIn("ggx  (physical)", text)
-        self.assertRegex(text, r"alpha +0\.1 +0\.001 to 1")
+        self.assertRegex(text, r"alpha_x +0\.1 +0\.001 to 1")
 
     def test_json_holds_the_same(self):
         models = {m["name"]: m for m in self.json_of("list")["models"]}
         self.assertIn("lambert", models)
         alpha = models["ggx"]["parameters"][0]
-        self.assertEqual((alpha["name"], alpha["default"], alpha["minimum"]), ("alpha", 0.1, 0.001))
+        self.assertEqual((alpha["name"], alpha["default"], alpha["minimum"]), ("alpha_x", 0.1, 0.001))
 
     def test_prints_the_canonical_form_which_is_stable(self):
         once, _ = self.run_program("list", " .3*lambert:rho=.5+ggx:alpha=1e-1")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small files of each format of the table, from which tests and fuzzers start: made from formulas, or kept as
-// examples/KEY.* where KEY is the format's.
+// REFLECTREE_EXAMPLES/KEY.* where KEY is the format's.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +59,7 @@ inline std::vector<Bytes> example_files(std::string_view key) {
   }
   std::error_code none;
   std::vector<fs::path> kept;
-  for (const auto& entry : fs::directory_iterator(fs::path(__FILE__).parent_path() / "examples", none)) {
+  for (const auto& entry : fs::directory_iterator(REFLECTREE_EXAMPLES, none)) {
     if (entry.path().stem() == key) kept.push_back(entry.path());
   }
   std::sort(kept.begin(), kept.end());

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "reflectree/math/uniform_bits.hpp"
+#include "reflectree/verify/reference.hpp"
 
 namespace reflectree {
 namespace {
@@ -20,6 +23,55 @@ TEST(Registry, NamesAreUniqueAndFound) {
   }
   EXPECT_EQ(find_sampler("no such sampler"), nullptr);
 }
+
+// Whatever is listed draws directions above the surface from the density that it states, and weights them
+// without bias where it says so: a mean of weights within five standard errors of the albedo.
+class EachSampler : public testing::TestWithParam<const SamplerInfo*> {};
+
+TEST_P(EachSampler, IsWhatItsRowSays) {
+  const SamplerInfo& info = *GetParam();
+  const Material material = parse_material("plastic:kd=0.5,alpha=0.4");
+  const PeerSubject subject{make_brdf(material), material, {}};
+  const auto sampler = info.make(subject, {});
+  if (!sampler) {
+    EXPECT_FALSE(info.general) << "a general sampler takes any BRDF";
+    return;
+  }
+  const Direction wo = direction_from_angles(0.7f, 0.3f);
+  const TargetFunction f = target_function(subject.f);
+  const double albedo = reference_albedo(f, wo).value;
+  constexpr int draws = 40'000;
+  double sum = 0, squares = 0;
+  Pcg32 u(5);
+  for (int i = 0; i < draws; ++i) {
+    const auto s = sampler->sample(wo, u);
+    if (!s) continue;  // weight 0
+    ASSERT_GT(s->wi.z, 0);
+    ASSERT_NEAR(double(length(s->wi)), 1, 1e-4);
+    if (sampler->has_pdf()) {
+      ASSERT_NEAR(sampler->pdf(wo, s->wi), s->pdf, 2e-3f * s->pdf);
+    }
+    const double weight = double(Target{}(s->weight));
+    sum += weight, squares += weight * weight;
+  }
+  const double mean = sum / draws, error = std::sqrt(std::max(squares / draws - mean * mean, 0.) / draws);
+  if (info.unbiased) {
+    EXPECT_NEAR(mean, albedo, 5 * error + 1e-3 * albedo);
+  } else {
+    EXPECT_NEAR(mean, albedo, 0.1 * albedo) << "biased, but no stranger";
+  }
+}
+
+std::vector<const SamplerInfo*> all_samplers() {
+  std::vector<const SamplerInfo*> all;
+  for (const SamplerInfo& info : samplers()) all.push_back(&info);
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(Rows, EachSampler, testing::ValuesIn(all_samplers()), [](const auto& row) {
+  std::string name(row.param->name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 TEST(UniformBits, TheChosenPointComesFirst) {
   Pcg32 rest(7);

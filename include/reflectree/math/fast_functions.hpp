@@ -3,9 +3,9 @@
 //
 //   function              computes                        range                error in float
 //   cos_sin_quarter(t)    {cos, sin} of pi t / 4          |t| <= 1             < 1.2e-7 absolute
-//   cos_sin_half(t)       {cos, sin} of pi t / 2          |t| <= 1             < 1.2e-7 absolute
+//   cos_sin_half(t)       {cos, sin} of pi t / 2          |t| <= 1             < 2e-7 absolute
 //   on_circle(t)          {cos, sin} of 2 pi t            0 <= t <= 1          < 1.2e-7 absolute
-//   quarter_atan(t)       (4 / pi) atan(t)                |t| <= 1             < 2e-7 relative
+//   quarter_atan(t)       (4 / pi) atan(t)                |t| <= 1             < 3e-7 relative
 //   first_quadrant_angle  atan2(y, x)                     x, y >= 0            < 3e-7 relative
 //   angle_of(y, x)        atan2(y, x)                     all                  < 3e-7 relative
 //   polar_angle(s2, c)    atan2(sqrt(s2), c)              s2 >= 0, c >= 0      < 3e-7 relative

@@ -9,8 +9,9 @@ namespace reflectree::render {
 
 Dielectric fresnel(float cos_theta, float eta) {
   const float relative = cos_theta >= 0 ? eta : 1 / eta, c = std::abs(cos_theta), n2 = relative * relative;
-  const float root = refracted_root(c, n2), t = root / relative;
-  if (!(root > 0)) return {1, 0, relative};
+  const float root2 = n2 + c * c - 1;
+  if (!(root2 > 0)) return {1, 0, relative};
+  const float root = std::sqrt(root2), t = root / relative;
   return {fresnel_dielectric(c, root, n2), cos_theta >= 0 ? -t : t, relative};
 }
 

@@ -25,7 +25,8 @@ struct AbcMicrofacet {
     const T facing = T(2) * g.cos_theta_h / g.cos_theta_d;
     const T masking = min(T(1), facing * min(g.cos_theta_o, g.cos_theta_i));
     const T n2 = T(ior) * T(ior);
-    const T fresnel = fresnel_dielectric(g.cos_theta_d, refracted_root(g.cos_theta_d, n2), n2);
+    const T root = sqrt(max(n2 + sqr(g.cos_theta_d) - T(1), T(0)));
+    const T fresnel = fresnel_dielectric(g.cos_theta_d, root, n2);
     const T specular = fresnel * lobe * masking / (pi_v<T> * g.cos_theta_o * g.cos_theta_i);
     return T(1) / pi_v<T> * as_rgb<T>(kd) + specular * as_rgb<T>(a);
   }

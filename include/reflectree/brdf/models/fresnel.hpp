@@ -8,14 +8,9 @@
 
 namespace reflectree {
 
-// n cos theta_t = sqrt(n^2 - sin^2) behind a dielectric interface, n: of the far side over the near side;
-// 0 where all light is reflected.
-template <class T>
-T refracted_root(T cosine, T n2) {
-  return sqrt(max(n2 + sqr(cosine) - T(1), T(0)));
-}
-
-// The mean of both polarisations; `root`: refracted_root(cosine, n2). 0 / 0 where cosine and root are 0.
+// A dielectric: the mean of both polarisations. n: index of the far side over the near side;
+// root = n cos theta_t = sqrt(n^2 - sin^2 theta), 0 where all light is reflected. 0 / 0 where cosine and root
+// are 0.
 template <class T>
 T fresnel_dielectric(T cosine, T root, T n2) {
   const T perpendicular = (cosine - root) / (cosine + root);
