@@ -28,9 +28,23 @@ class Files(ProgramTest):
         for threads in (1, 2, 3):
             self.run_program("build", "plastic", "-o", f"{threads}.rfl", "--threads", threads)
             self.run_program("bake", "plastic", "-o", f"{threads}.binary", "--threads", threads)
-        for suffix in ("rfl", "binary"):
+            self.run_program("bake", "ward:alpha_x=.2,alpha_y=.4", "--format", "rgl", "--normals", "32", "--colours", "8",
+                             "-o", f"{threads}.bsdf", "--threads", threads)
+        for suffix in ("rfl", "binary", "bsdf"):
             one, *others = ((self.folder / f"{n}.{suffix}").read_bytes() for n in (1, 2, 3))
             self.assertTrue(all(other == one for other in others), suffix)
+
+    def test_an_rgl_file_is_baked_and_read(self):
+        text, _ = self.run_program("bake", "ggx:alpha=0.3", "--format", "rgl", "-o", "g.bsdf")
+        self.assertRegex(text, r"^g.bsdf  isotropic, 1 x 16 viewers, 1.[0-9] MiB; differs from the material by 0?.?[0-9.]+ %$")
+        self.assertEqual(self.run_program("list", "g.bsdf")[0], "g.bsdf\n")
+        facts = self.json_of("bake", "ggx:alpha_x=.1,alpha_y=.3,phi_deg=20", "--format", "rgl", "--normals", "48",
+                             "--azimuths", "3", "--elevations", "6", "-o", "a.bsdf")
+        self.assertEqual((facts["reduction"], facts["azimuths"], facts["elevations"]), (2, 5, 6))
+        self.assertLess(facts["error"], .1)
+        self.assertEqual(facts["bytes"], (self.folder / "a.bsdf").stat().st_size)
+        self.run_program("bake", "ggx", "--format", "pdf", "-o", "x", code=2)
+        self.run_program("bake", "ggx", "--format", "rgl", "--normals", "1", "-o", "x", code=2)
 
     def test_options_of_building_matter(self):
         plain = self.json_of("info", "ggx:alpha=0.2")
