@@ -259,8 +259,7 @@ double largest_albedo(const KlemsTable& table) {
   for (int in = 0; in < table.incident.size(); ++in) {
     double sum = 0;
     for (int out = 0; out < table.exiting.size(); ++out) {
-      sum += table.exiting.projected_solid_angle(out) *
-             double(table.values[std::size_t(in) * std::size_t(table.exiting.size()) + std::size_t(out)]);
+      sum += table.exiting.projected_solid_angle(out) * double(table.value(in, out));
     }
     largest_sum = std::max(largest_sum, sum);
   }

@@ -60,6 +60,11 @@ std::vector<double> table_places(const PackedSampler& packed, std::size_t count,
   };
   std::vector<Place> places;
   const auto albedo = [&](std::size_t i) { return double(packed.viewer.albedo.at(float(nodes[i]))); };
+  // Two nodes closer than the rounding of a direction are the sides of a jump: each is looked at from further
+  // away.
+  const auto jump_after = [&](std::size_t i) {
+    return i + 1 < nodes.size() && nodes[i + 1] - nodes[i] < 1.5e-7 * nodes[i];
+  };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     double bend = 0;
     if (i > 0 && i + 1 < nodes.size()) {
@@ -67,8 +72,10 @@ std::vector<double> table_places(const PackedSampler& packed, std::size_t count,
       const double line = (1 - t) * albedo(i - 1) + t * albedo(i + 1);
       bend = std::abs(albedo(i) - line) / std::max(albedo(i), 1e-30);
     }
-    places.push_back({bend, nodes[i]});
-    if (i + 1 < nodes.size()) places.push_back({bend, 0.5 * (nodes[i] + nodes[i + 1])});
+    const double away = 4e-7 * nodes[i];
+    const bool below = jump_after(i), above = i > 0 && jump_after(i - 1);
+    places.push_back({bend, below ? nodes[i] - away : above ? nodes[i] + away : nodes[i]});
+    if (i + 1 < nodes.size() && !below) places.push_back({bend, 0.5 * (nodes[i] + nodes[i + 1])});
   }
   std::stable_sort(places.begin(), places.end(),
                    [](const Place& a, const Place& b) { return a.bend > b.bend; });

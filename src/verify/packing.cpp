@@ -42,7 +42,9 @@ CheckResult check_albedo(const SamplerData& data, const PackedSampler& packed) {
   const std::size_t columns = table.cos_theta_o.size();
   for (std::size_t row = 0; row < std::max<std::size_t>(table.phi_o.size(), 1); ++row) {
     const float* albedo = table.albedo.data() + row * columns;
-    const float phi = table.phi_o.empty() ? 0 : table.phi_o[row];
+    float phi = table.phi_o.empty() ? 0 : table.phi_o[row];
+    // The azimuth at which a segment ends belongs to the next one.
+    if (row + 1 < table.phi_o.size() && table.phi_o[row + 1] == phi) phi = std::nextafter(phi, 0.f);
     const auto looked_up = [&](float c) {
       return double(table.phi_o.empty() ? packed.viewer.albedo.at(c) : packed.viewer.albedo.at(c, phi));
     };

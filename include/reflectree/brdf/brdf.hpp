@@ -81,6 +81,13 @@ struct SharpLobe {
   float width;       // radians, about: where f has fallen to a third
 };
 
+// Azimuths of wo at which an anisotropic f leaps or bends, for all elevations from where the band before
+// ends.
+struct AzimuthKnots {
+  float theta_o_end;         // radians
+  std::vector<float> phi_o;  // radians, in any order
+};
+
 // What a function may tell about itself. The builder verifies what it can.
 struct BrdfTraits {
   std::string name = "lambda";  // canonical material text where there is one
@@ -94,6 +101,10 @@ struct BrdfTraits {
   std::vector<float> theta_o_knots;  // radians: elevations where f has kinks in theta_o
   std::vector<float> theta_d_knots;  // radians: difference angles where f has kinks; theta_o meets them at a
                                      // mirror lobe, where the albedo inherits them
+  std::vector<AzimuthKnots> phi_o_knots;  // bands of theta_o, ascending
+  // Of a function of one channel: the integral of f cos_i over the hemisphere for a viewer, known exactly.
+  // Empty: cubature finds it, as it checks what is told.
+  std::function<double(Direction wo)> albedo;
   // A factor of f that depends on theta_o (radians) alone, > 0; empty: none known. Albedo tables interpolate
   // what is left of the albedo without it, so that its kinks cost no integral.
   std::function<double(double)> theta_o_factor;

@@ -2,6 +2,7 @@
 #include "reflectree/brdf/tables/klems_table.hpp"
 
 #include <cassert>
+#include <utility>
 
 #include "reflectree/math/fast_functions.hpp"
 
@@ -26,6 +27,13 @@ int KlemsBasis::patch_of(Direction w) const {
   return first_[ring] + (k < 0 ? k + n : k >= n ? k - n : k);
 }
 
+std::vector<float> KlemsBasis::azimuth_borders(std::size_t ring) const {
+  std::vector<float> borders;
+  const int n = patches_[ring];
+  for (int k = 0; n > 1 && k < n; ++k) borders.push_back(2 * pi * (float(k) + 0.5f) / float(n));
+  return borders;
+}
+
 double KlemsBasis::projected_solid_angle(int patch) const {
   std::size_t ring = patches_.size() - 1;
   while (patch < first_[ring]) --ring;
@@ -38,15 +46,32 @@ float KlemsTable::operator()(const ShadingGeometry<float>& g) const {
   const int in = incident.patch_of({-side * g.wo.x, -g.wo.y, g.wo.z});
   const int out = exiting.patch_of({side * g.wi.x, g.wi.y, g.wi.z});
   if (in < 0 || out < 0) return 0;
-  return values[std::size_t(in) * std::size_t(exiting.size()) + std::size_t(out)];
+  return value(in, out);
 }
 
 BrdfTraits KlemsTable::traits() const {
   BrdfTraits traits;
-  traits.name = name;
+  traits.name = name, traits.channels = 1;
   traits.isotropic = false;
   const std::vector<float>& borders = incident.ring_borders();
-  for (std::size_t i = 1; i + 1 < borders.size(); ++i) traits.theta_o_knots.push_back(borders[i]);
+  for (std::size_t i = 1; i < borders.size(); ++i) {
+    if (i + 1 < borders.size() || borders[i] < 1.57f) traits.theta_o_knots.push_back(borders[i]);
+    AzimuthKnots band{borders[i], incident.azimuth_borders(i - 1)};
+    for (float& phi : band.phi_o) phi = seen_through ? 2 * pi - phi : phi + pi;
+    traits.phi_o_knots.push_back(std::move(band));
+  }
+  // Sums over the exiting patches, of every incident one.
+  std::vector<double> albedo;
+  for (int in = 0; in < incident.size(); ++in) {
+    albedo.push_back(0);
+    for (int out = 0; out < exiting.size(); ++out)
+      albedo.back() += exiting.projected_solid_angle(out) * double(value(in, out));
+  }
+  const float side = seen_through ? -1.f : 1.f;
+  traits.albedo = [basis = incident, albedo, side](Direction wo) {
+    const int in = basis.patch_of({-side * wo.x, -wo.y, wo.z});
+    return in < 0 ? 0. : albedo[std::size_t(in)];
+  };
   return traits;
 }
 

@@ -221,6 +221,15 @@ BrdfTraits RglWideTable::traits() const {
   traits.isotropic = traits.isotropic_by_formula = slices_ == 2;
   traits.theta_o_knots = theta_o_;
   if (reduction_ == 4) traits.axis = 0.f;
+  if (slices_ == 4) {  // the nodes, and what their half or quarter is repeated by
+    AzimuthKnots all{pi / 2, {}};
+    for (const float phi : phi_o_) {
+      all.phi_o.push_back(phi);
+      if (reduction_ > 1) all.phi_o.push_back(phi + pi);
+      if (reduction_ > 2) all.phi_o.push_back(-phi), all.phi_o.push_back(pi - phi);
+    }
+    traits.phi_o_knots.push_back(std::move(all));
+  }
   return traits;
 }
 

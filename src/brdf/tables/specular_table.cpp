@@ -89,6 +89,11 @@ BrdfTraits SpecularTable<Value>::traits() const {
   traits.name = name;
   traits.isotropic = traits.isotropic_by_formula = axes.rotation.size() == 1;
   traits.theta_o_knots = axes.theta_o;
+  if (!traits.isotropic) {
+    AzimuthKnots all{pi / 2, {}};
+    for (const float rotation : axes.rotation) all.phi_o.push_back(pi / 2 - rotation);
+    traits.phi_o_knots.push_back(std::move(all));
+  }
   return traits;
 }
 

@@ -4,17 +4,19 @@
 
 #include <functional>
 
-#include "reflectree/sampler/known/albedo.hpp"
+#include "albedo_rows.hpp"
 #include "reflectree/sampler/known/viewer_frame.hpp"
 
 namespace reflectree::detail {
 
-// row_at(phi_o, checked): the table at one azimuth of the viewer, to a third of the error asked for;
-// `checked` by other integrals: later rows are checked by what the earlier ones foretell. Rows are computed
-// at twice as many azimuths until the series through those there were foretell the new ones, or the effort is
-// spent; the table holds as many rows, read off the series, as cubics between them need.
-AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, float relative_error,
-                                const std::function<AlbedoTable(float phi_o, bool checked)>& row_at,
+// borders: where f leaps or bends over phi_o, from 0 to the span, radians. Without any between those two the
+// function is taken for smooth (a series); where that does not hold, and with borders, the table is made in
+// pieces. Rows are added until they foretell each other and miss_of(table), the largest relative miss at
+// viewers that no row stands at, is what the table states; or the effort is spent, and the table states what
+// it misses.
+AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, const std::vector<float>& borders,
+                                float relative_error, const RowAt& row_at,
+                                const std::function<double(const AlbedoTable&)>& miss_of,
                                 const std::function<bool()>& spent);
 
 }  // namespace reflectree::detail

@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "albedo_azimuth.hpp"
 #include "albedo_integrals.hpp"
 #include "albedo_panels.hpp"
+#include "albedo_witnesses.hpp"
+#include "knots.hpp"
+#include "reflectree/math/genz_malik.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 
@@ -18,27 +22,29 @@ namespace {
 // with.
 class TableBuilder {
  public:
-  TableBuilder(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
-               const Host& host, Effort& effort, std::uint64_t budget)
+  TableBuilder(const Field& field, float phi_o, float relative_error, const Jumps& jumps, const Host& host,
+               Effort& effort, std::uint64_t budget)
       : field_(field),
         phi_o_(phi_o),
         host_(host),
         effort_(effort),
         error_(double(relative_error)),
         known_(field.f.traits().theta_o_factor),
+        told_(field.f.traits().albedo),
         start_(effort.evaluations),
         budget_(budget),
+        max_regions_(std::size_t(clamp(double(budget) / (15 * double(genz_malik_points)), 400., 40000.))),
         apart_{0, effort.limit},
         rim_(!field.frame.isotropic()) {
     if (!field.frame.isotropic()) cells_x_ = 12, cells_y_ = 6;
     std::vector<double> borders = first_borders(field.f.traits());
-    for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
+    for (const ThetaJump& jump : jumps.theta_o) borders.push_back(jump.before), borders.push_back(jump.after);
     std::sort(borders.begin(), borders.end());
     borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
     first_ = borders.front();
     for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
-      const bool jump = std::any_of(jumps.begin(), jumps.end(), [&](float theta) {
-        return borders[i] >= before(theta) && borders[i + 1] <= after(theta);
+      const bool jump = std::any_of(jumps.theta_o.begin(), jumps.theta_o.end(), [&](const ThetaJump& j) {
+        return borders[i] >= j.before && borders[i + 1] <= j.after;
       });
       open_.push_back({borders[i], borders[i + 1], 0, jump});
     }
@@ -48,8 +54,9 @@ class TableBuilder {
   void refine() { refine(true); }
 
   // Integrals at random places inside the panels, by another cubature: panels that miss them are refined, a
-  // few times; what is missed in the end, the table states.
+  // few times; what is missed in the end, the table states. What f told is checked as a whole, elsewhere.
   void check(std::uint64_t seed) {
+    if (told_) return;
     constexpr int rounds = 8;
     Pcg32 u(seed, 19);
     std::vector<Panel> fresh = closed_;
@@ -65,14 +72,14 @@ class TableBuilder {
         }
       }
       std::vector<double> misses =
-          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress, phi_o_});
+          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
         if (misses[i] > accepted * error_) doubtful.push_back(cosines[i]);
       }
       const std::vector<double> decided =
-          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress, phi_o_});
+          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress});
       double worst = 0;
       std::vector<Panel> missed;
       for (std::size_t i = 0, d = 0; i < cosines.size(); ++i) {
@@ -133,19 +140,18 @@ class TableBuilder {
  private:
   static constexpr int deepest = 10;
   static constexpr double accepted = 0.7;  // of the error, between table and check
-  static constexpr float grazing_cosine =
-      1.745e-3f;  // of 89.9 degrees; beyond, ten times the error is allowed
   static constexpr float progress = 0.1f, progress_end = 0.4f;
 
   double cubature_error() const { return 0.25 * error_; }
   double interpolation_error() const { return 0.15 * error_; }
-  // Where floats of the cosine tell both sides of a jump apart.
-  static double half_width(float theta) { return max(1e-6, 2e-7 / std::sin(double(theta))); }
-  static double before(float theta) { return double(theta) - half_width(theta); }
-  static double after(float theta) { return double(theta) + half_width(theta); }
   // The nodes hold the albedo without the factor that the function knows of.
   double factor(double theta_o) const { return known_ ? known_(theta_o) : 1.; }
 
+  std::vector<Direction> viewers_at(const std::vector<float>& cosines) const {
+    std::vector<Direction> viewers;
+    for (const float c : cosines) viewers.push_back(turned_to(wo_from_cosine(c), phi_o_));
+    return viewers;
+  }
   std::array<double, 5> values_of(const Panel& panel) const {
     std::array<double, 5> v;
     for (int i = 0; i < 5; ++i) v[std::size_t(i)] = nodes_.at(node_of(panel, i));
@@ -154,12 +160,11 @@ class TableBuilder {
   // By how much the table misses integrals, relatively; near grazing ten times as much is a miss of one.
   std::vector<double> misses_at(const AlbedoTable& table, const std::vector<float>& cosines,
                                 const IntegralOptions& options) {
-    const Integrals seen = integrate(field_, cosines, options, host_, apart_);
+    const Integrals seen = integrate(field_, viewers_at(cosines), options, host_, apart_);
     std::vector<double> misses;
     for (std::size_t i = 0; i < cosines.size(); ++i) {
       const double a = double(albedo_at(table, cosines[i])), b = seen.values[i];
-      const double allowance = cosines[i] < grazing_cosine ? 10 : 1;
-      misses.push_back(max(a, b) > 0 ? std::abs(a - b) / max(a, b) / allowance : 0);
+      misses.push_back(max(a, b) > 0 ? std::abs(a - b) / max(a, b) / times_allowed(cosines[i]) : 0);
     }
     return misses;
   }
@@ -200,9 +205,15 @@ class TableBuilder {
   void integrate_nodes(const std::vector<double>& thetas) {
     std::vector<float> cosines;
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
-    const Integrals a = integrate(
-        field_, cosines, {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, phi_o_}, host_,
-        effort_);
+    Integrals a;
+    if (told_) {
+      for (const Direction wo : viewers_at(cosines))
+        a.values.push_back(double(field_.target.scale) * told_(field_.to_caller(wo)));
+    } else {
+      a = integrate(field_, viewers_at(cosines),
+                    {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, max_regions_}, host_,
+                    effort_);
+    }
     for (std::size_t i = 0; i < thetas.size(); ++i) nodes_[thetas[i]] = a.values[i] / factor(thetas[i]);
     worst_ = max(worst_, a.error);
   }
@@ -236,7 +247,10 @@ class TableBuilder {
   Effort& effort_;
   double error_;
   const Factor known_;
+  const std::function<double(Direction)> told_;  // the albedo, where f knows it
   std::uint64_t start_, budget_;
+  // Of one integral: where a row has little effort to spend, steps take no more than their share of it.
+  std::size_t max_regions_;
   Effort apart_;  // of the checks: evaluations count what the sampler is made of
   // Lobes that lie askew hide better: anisotropic functions begin with more cells.
   int cells_x_ = 8, cells_y_ = 4;
@@ -246,12 +260,8 @@ class TableBuilder {
   std::map<double, double> nodes_;
 };
 
-}  // namespace
-
-namespace {
-
 // The table at one azimuth of the viewer.
-AlbedoTable build_row(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
+AlbedoTable build_row(const Field& field, float phi_o, float relative_error, const Jumps& jumps,
                       std::uint64_t seed, const Host& host, Effort& effort, std::uint64_t budget,
                       bool checked) {
   TableBuilder builder(field, phi_o, relative_error, jumps, host, effort, budget);
@@ -262,17 +272,34 @@ AlbedoTable build_row(const Field& field, float phi_o, float relative_error, con
 
 }  // namespace
 
-AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
-                         std::uint64_t seed, const Host& host, Effort& effort) {
+AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& jumps, std::uint64_t seed,
+                         const Host& host, Effort& effort) {
   const std::uint64_t budget = effort.limit / 3;
-  if (field.frame.isotropic())
-    return build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
+  if (field.frame.isotropic()) {
+    AlbedoTable table = build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
+    if (field.f.traits().albedo)
+      AlbedoWitnesses(field, double(relative_error), seed, host, effort.limit).miss_of(table);
+    return table;
+  }
   const std::uint64_t start = effort.evaluations;
+  const std::vector<float> borders = azimuth_borders(field, &jumps, 0, theta_max);
+  const std::uint64_t each = budget / std::max<std::uint64_t>(8, 5 * (borders.size() - 1));
+  // What the first row cannot reach, the others do not try for.
+  const float asked = 0.35f * relative_error;
+  float reachable = 0;
   const auto row_at = [&](float phi_o, bool checked) {
-    return build_row(field, phi_o, 0.35f * relative_error, jumps, seed, host, effort, budget / 8, checked);
+    AlbedoTable row =
+        build_row(field, phi_o, max(asked, reachable), jumps, seed, host, effort, each, checked);
+    if (reachable == 0) reachable = row.relative_error;
+    return row;
+  };
+  std::optional<AlbedoWitnesses> witnesses;
+  const auto miss_of = [&](const AlbedoTable& table) {
+    if (!witnesses) witnesses.emplace(field, double(table.relative_error), seed, host, effort.limit);
+    return witnesses->miss_of(table);
   };
   const auto spent = [&] { return effort.evaluations - start > budget; };
-  return albedo_over_azimuth(field.frame.symmetry, relative_error, row_at, spent);
+  return albedo_over_azimuth(field.frame.symmetry, borders, relative_error, row_at, miss_of, spent);
 }
 
 }  // namespace reflectree::detail

@@ -35,8 +35,6 @@ struct Integral {
   bool done = false;
 };
 
-constexpr std::size_t max_regions = 40000;
-
 void start(Integral& integral, const Field& field, const IntegralOptions& options) {
   const Domain& domain = field.domain;
   const int nx = options.cells_x, ny = domain.half() ? options.cells_y : 2 * options.cells_y;
@@ -93,7 +91,7 @@ void start(Integral& integral, const Field& field, const IntegralOptions& option
   }
 }
 
-void advance(Integral& integral, double relative_error) {
+void advance(Integral& integral, double relative_error, std::size_t max_regions) {
   integral.value = integral.error = 0;
   double square = 0;
   for (const Region& r : integral.regions) {
@@ -142,13 +140,13 @@ void advance(Integral& integral, double relative_error) {
 
 }  // namespace
 
-Integrals integrate(const Field& field, const std::vector<float>& cosines, const IntegralOptions& options,
+Integrals integrate(const Field& field, const std::vector<Direction>& viewers, const IntegralOptions& options,
                     const Host& host, Effort& effort) {
-  if (cosines.empty()) return {};
+  if (viewers.empty()) return {};
   const double area = double(root_area(field.domain.symmetry));
-  std::vector<Integral> integrals(cosines.size());
-  for (std::size_t i = 0; i < cosines.size(); ++i) {
-    integrals[i].wo = turned_to(wo_from_cosine(cosines[i]), options.phi_o);
+  std::vector<Integral> integrals(viewers.size());
+  for (std::size_t i = 0; i < viewers.size(); ++i) {
+    integrals[i].wo = viewers[i];
     start(integrals[i], field, options);
   }
   std::vector<FieldPoint> points;
@@ -182,7 +180,7 @@ Integrals integrate(const Field& field, const std::vector<float>& cosines, const
         for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r, v += genz_malik_points) {
           apply_rule(integral.regions[r], v, area);
         }
-        advance(integral, options.relative_error);
+        advance(integral, options.relative_error, options.max_regions);
       }
     });
     busy = std::any_of(integrals.begin(), integrals.end(), [](const Integral& i) { return !i.done; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The albedo at single elevations, by adaptive cubature over the square of the domain.
+// The albedo of single viewers, by adaptive cubature over the square of the domain.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ struct IntegralOptions {
   int cells_x = 8, cells_y = 4;
   bool rim = false;  // close in on the rim, where some functions bend within cos_theta_o of it
   float progress = 0, progress_end = 0;  // of the host's bar
-  float phi_o = 0;                       // of all viewers, in their frame
+  std::size_t max_regions = 40000;       // of one integral
 };
 
 struct Integrals {
@@ -24,8 +24,9 @@ struct Integrals {
       0;  // the largest, relative; more than asked for where the limit of regions does not reach it
 };
 
-// Integrates T over the square for every cosine; all integrals advance together, a round a batch.
-Integrals integrate(const Field& field, const std::vector<float>& cosines, const IntegralOptions& options,
+// Integrates T over the square for every viewer, in their frame; all integrals advance together, a batch per
+// round.
+Integrals integrate(const Field& field, const std::vector<Direction>& viewers, const IntegralOptions& options,
                     const Host& host, Effort& effort);
 
 }  // namespace reflectree::detail

@@ -43,7 +43,11 @@ void tabulate_part(const Panel& panel, const std::array<double, 5>& v, const Fac
     tabulate_part(panel, v, factor, mid, t1, error, depth - 1, table);
     return;
   }
-  table[cosine_of(theta_at(t1))] = max(a1, 0.);
+  // Near the normal floats of the cosine are far apart in theta_o: there the entry is that of the float.
+  const float entry = cosine_of(theta_at(t1));
+  const double theta = std::acos(double(entry));
+  const double at_entry = albedo(clamp(4 * (theta - panel.lo) / (panel.hi - panel.lo), 0., 4.));
+  table[entry] = max(std::abs(at_entry - a1) > 0.02 * error * a1 ? at_entry : a1, 0.);
 }
 
 }  // namespace

@@ -30,6 +30,9 @@ float cosine_of(double theta);
 // The polynomial through the values at t = 0, step, ... of the five nodes, at t in [0, 4].
 double interpolate(const std::array<double, 5>& values, int step, double t);
 
+// How many times the stated error a table may miss: once, ten times beyond 89.9 degrees.
+inline double times_allowed(float cos_theta_o) { return cos_theta_o < 1.745e-3f ? 10 : 1; }
+
 // What the function knows about its albedo: a factor over theta_o, radians.
 using Factor = std::function<double(double theta_o)>;
 // Appends the entries of the panel after its lower end, so that lines in the cosine miss the polynomial times

@@ -12,11 +12,12 @@
 #include "examine.hpp"
 #include "field.hpp"
 #include "findings.hpp"
+#include "jumps.hpp"
 #include "passes.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/identity.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
-#include "theta_jumps.hpp"
+#include "tighten.hpp"
 
 namespace reflectree {
 
@@ -45,7 +46,7 @@ std::vector<FieldPoint> highest_places(const std::vector<Slab>& slabs) {
 // The attempt at a sampler that knows of some ridges.
 struct Attempt {
   Domain domain;
-  std::vector<float> jumps;
+  Jumps jumps;
   AlbedoTable albedo;
   std::vector<Slab> exact, one_shot;
   CrossExamination seen;
@@ -59,7 +60,7 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   host.progress(0.1f);
   host.stage("integrating the albedo");
   Effort uncounted{0, options.max_evaluations};
-  attempt.jumps = find_theta_jumps(field, host, uncounted);
+  attempt.jumps = find_jumps(field, host, uncounted);
   attempt.albedo = build_albedo(field, options.albedo_error, attempt.jumps, options.seed, host, effort);
   const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, &towers};
   attempt.exact = build_exact(survey, options, report);
@@ -67,7 +68,17 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   host.stage("cross-examining");
   const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
   const FieldPoint brightest{seen.brightest_wo, field.place_of(seen.brightest_wo, seen.brightest_wi)};
-  attempt.seen = cross_examine(attempt.exact, apart, brightest, options.seed);
+  // Slivers of steps, where no local search leads: what was met is mended, and all is asked again.
+  constexpr std::uint64_t rounds = 24;
+  for (std::uint64_t round = 0;; ++round) {
+    attempt.seen = cross_examine(attempt.exact, apart, brightest, options.seed + 7919 * round);
+    std::vector<FieldPoint> met;
+    bool told = true;
+    for (const Surprise& s : attempt.seen.surprises)
+      met.push_back({s.wo, s.p}), told = told && std::isfinite(s.ratio);
+    if (field.frame.isotropic() || met.empty() || !told || round + 1 == rounds) break;
+    raise_at(attempt.exact, met, apart);
+  }
   attempt.seen.towers = std::move(towers);
   if (attempt.seen.towers.empty() && disagrees(attempt.seen, attempt.albedo))
     attempt.seen.towers = highest_places(attempt.exact);
@@ -91,9 +102,11 @@ void refuse_unfit_domain(const AlbedoTable& albedo, const Field& fit, const Host
   constexpr double allowed = 0.02;
   const std::vector<float> cosines{0.95f, 0.6f, 0.2f};
   Effort uncounted;
-  const Integrals own = integrate(fit, cosines, {1e-3, 8, 4, true, 0.86f, 0.86f}, host, uncounted);
+  std::vector<Direction> viewers;
+  for (const float c : cosines) viewers.push_back(wo_from_cosine(c));
+  const Integrals own = integrate(fit, viewers, {1e-3, 8, 4, true, 0.86f, 0.86f}, host, uncounted);
   for (std::size_t i = 0; i < cosines.size(); ++i) {
-    const double a = double(albedo_at(albedo, cosines[i])), b = own.values[i];
+    const double a = double(albedo_at(albedo, cosines[i], 0)), b = own.values[i];
     if (std::abs(a - b) <= (allowed + double(albedo.relative_error) + own.error) * std::max(a, b)) continue;
     char what[128];
     std::snprintf(what, sizeof what, "the domain that was asked for sees an albedo of %.4g, %s sees %.4g", a,
@@ -152,6 +165,7 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
       refuse_unfit_domain(attempt.albedo, fit, host);
     }
     refuse_disagreement(attempt.seen, attempt.albedo, field, effort.spent());
+    state_misses(attempt.seen, attempt.albedo);
     const bool spent = effort.spent();
     effort.limit = options.max_evaluations;
     const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps};

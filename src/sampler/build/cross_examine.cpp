@@ -5,33 +5,25 @@
 #include <cmath>
 #include <limits>
 
+#include "albedo_integrals.hpp"
+#include "albedo_panels.hpp"
 #include "canonical.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
+#include "viewer_windows.hpp"
 
 namespace reflectree::detail {
 
 namespace {
 
 constexpr float surprising = 2;  // times the bound
-constexpr std::size_t most_surprises = 8;
+constexpr std::size_t most_surprises = 64;
 
 // The share of all viewers, uniform in the known coordinates, that are in the slab.
 double share_of_viewers(const Slab& slab, const Field& field) {
   double share = double(slab.box.width(0)) / double(theta_max);
   if (slab.box.axes > 1) share *= double(slab.box.width(1)) / double(azimuth_span(field.frame.symmetry));
   return share;
-}
-
-const Leaf& leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain) {
-  std::uint32_t i = 0;
-  while (slab.nodes[i].split != TreeSplit::leaf) {
-    const std::uint32_t child = slab.nodes[i].child;
-    const Box upper = box_of(slab.nodes[child + 1].leaf.cell, domain);
-    const bool up = slab.nodes[i].split == TreeSplit::x ? p.x >= upper.x0 : p.y >= upper.y0;
-    i = child + std::uint32_t(up);
-  }
-  return slab.nodes[i].leaf;
 }
 
 struct Mean {
@@ -66,7 +58,8 @@ std::vector<FieldPoint> probes(const Field& field, std::size_t count, Pcg32& u) 
 
 // Points drawn from the bounds of a slab, each for a theta_o of its own, and the bound there.
 void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain, Pcg32& u,
-                      std::vector<FieldPoint>& points, std::vector<float>& bounds) {
+                      std::vector<FieldPoint>& points, std::vector<Known>& known,
+                      std::vector<float>& bounds) {
   const std::vector<std::uint32_t> order = leaves_in_order(slab);
   std::vector<double> upper;
   double sum = 0;
@@ -80,17 +73,50 @@ void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain,
                         box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
     Known share{};
     for (int axis = 0; axis < slab.box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
-    points.push_back({viewer_at(slab.box.at(share)), p});
+    known.push_back(slab.box.at(share));
+    points.push_back({viewer_at(known.back()), p});
     bounds.push_back(leaf.height * shape(leaf, box, p));
   }
+}
+
+KnownBox space_of(const Field& field) {
+  return {{}, {theta_max, azimuth_span(field.frame.symmetry)}, field.axes()};
+}
+
+// The albedo of viewers in boxes under suspicion, by a finer cubature than those that made the table.
+std::vector<WrongAlbedo> look_at_albedo(const std::vector<KnownBox>& boxes, const Survey& survey, Pcg32& u) {
+  constexpr int each = 9;
+  std::vector<Known> known;
+  std::vector<Direction> viewers;
+  for (const KnownBox& box : boxes) {
+    for (int i = 0; i < each; ++i) {
+      const float across = (float(i) + to_unit_float(u())) / each;
+      known.push_back(box.at({box.axes > 1 ? to_unit_float(u()) : across, across}));
+      viewers.push_back(viewer_at(known.back()));
+    }
+  }
+  const Integrals seen =
+      integrate(survey.field, viewers, {1e-3, 24, 12, true, 0.87f, 0.87f}, survey.host, survey.effort);
+  std::vector<WrongAlbedo> wrong;
+  for (std::size_t i = 0; i < viewers.size(); ++i) {
+    if (survey.at_jump(viewers[i])) continue;
+    const double a = double(survey.albedo_at(viewers[i])), b = seen.values[i], larger = std::max(a, b);
+    const double miss =
+        larger > 0 ? (std::abs(a - b) / larger - seen.error) / times_allowed(viewers[i].z) : 0;
+    if (miss > double(survey.albedo.relative_error)) wrong.push_back({known[i], a, b, miss});
+  }
+  std::stable_sort(wrong.begin(), wrong.end(),
+                   [](const WrongAlbedo& a, const WrongAlbedo& b) { return a.miss > b.miss; });
+  return wrong;
 }
 
 }  // namespace
 
 CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& survey,
                                const FieldPoint& brightest, std::uint64_t seed) {
-  constexpr std::size_t probe_count = 3U << 16U, draw_count = 1U << 16U;
+  constexpr std::size_t probe_count = 3U << 16U;
   const Domain& domain = survey.field.domain;
+  const std::size_t draw_count = std::size_t(survey.field.axes() > 1 ? 4 : 1) << 16U;
   Pcg32 u(seed, 23);
   CrossExamination result;
 
@@ -104,11 +130,12 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
     const float a = survey.albedo_at(points[i].wo);
     if (!(values[i].upper > 0)) continue;
     const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
-    const Leaf& leaf = leaf_at(slabs[find_slab(partition, known)], points[i].p, domain);
+    const Slab& slab = slabs[find_slab(partition, known)];
+    const Leaf& leaf = slab.nodes[leaf_at(slab, points[i].p, domain)].leaf;
     const float bound = leaf.height * shape(leaf, box_of(leaf.cell, domain), points[i].p);
     const float ratio = a > 0 ? values[i].upper / (a * bound) : std::numeric_limits<float>::infinity();
     if (!(ratio > surprising)) continue;
-    result.surprises.push_back({points[i].wo, survey.field.direction_at(points[i]), ratio});
+    result.surprises.push_back({points[i].wo, survey.field.direction_at(points[i]), ratio, points[i].p});
   }
   std::stable_sort(result.surprises.begin(), result.surprises.end(),
                    [](const Surprise& a, const Surprise& b) { return a.ratio > b.ratio; });
@@ -117,15 +144,17 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   // A slab is drawn from as often as a viewer is in it; its mean is weighted by what it was drawn for.
   points.clear();
   std::vector<float> bounds;
+  std::vector<Known> known;
   std::vector<std::size_t> first;
   for (const Slab& slab : slabs) {
     first.push_back(points.size());
     const double share = share_of_viewers(slab, survey.field);
-    draw_from_bounds(slab, 16 + std::size_t(share * double(draw_count)), domain, u, points, bounds);
+    draw_from_bounds(slab, 16 + std::size_t(share * double(draw_count)), domain, u, points, known, bounds);
   }
   first.push_back(points.size());
   values.resize(points.size());
   survey.eval(points, values);
+  std::vector<ViewerDraw> draws;
   double weights = 0, error2 = 0;
   result.by_bounds = result.accepted = 0;
   for (std::size_t s = 0; s < slabs.size(); ++s) {
@@ -137,6 +166,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
       // Of mirror images on half a square one is drawn: their mean is what is accepted.
       const double ratio = double(values[i].mean) / (double(a) * double(bounds[i]));
       once.add(volume * ratio), accepted.add(volume * std::min(ratio, 1.));
+      draws.push_back({known[i], float(volume * ratio)});
     }
     if (once.count == 0) continue;
     const double w = share_of_viewers(slabs[s], survey.field);
@@ -150,6 +180,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   } else {
     result.by_bounds = result.accepted = 1;
   }
+  result.wrong = look_at_albedo(odd_windows(draws, space_of(survey.field)), survey, u);
   return result;
 }
 

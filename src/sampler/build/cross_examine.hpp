@@ -10,10 +10,18 @@ namespace reflectree::detail {
 struct Surprise {
   Direction wo, wi;  // in the viewer's frame
   float ratio;       // of T / albedo to the bound; infinite where the albedo is 0
+  Vec2<float> p{};   // the place of wi in the square
+};
+
+// A viewer for whom the table of the albedo is not what cubature finds.
+struct WrongAlbedo {
+  Known known;
+  double table, found, miss;  // miss: relative, beyond what the cubature leaves open
 };
 
 struct CrossExamination {
   std::vector<Surprise> surprises;  // the largest ratios first
+  std::vector<WrongAlbedo> wrong;   // where draws for neighbouring viewers made it suspect; the worst first
   // Means over all viewers of T / albedo, which integrates to 1, drawn from the bounds: as sample_once does,
   // with its standard error, and as sum(V) accepted / trials, which is less where bounds are overshot.
   double by_bounds = 1, by_bounds_error = 0;

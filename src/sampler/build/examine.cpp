@@ -255,7 +255,9 @@ ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<D
   }
   const float refined = nearest_plane(f, values, wo, wi, lobe.axis);
   if (mirrors(refined)) return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane, refined};
-  return {half_turn ? ViewerSymmetry::half_turn : ViewerSymmetry::none, lobe.axis};
+  // Tables made of patches stay in their own frame, in whose cells borders lie well.
+  const float axis = f.traits().phi_o_knots.empty() ? lobe.axis : 0.f;
+  return {half_turn ? ViewerSymmetry::half_turn : ViewerSymmetry::none, axis};
 }
 
 // The largest channel that a climb from the brightest pair finds, where that is suspiciously dark: the pairs

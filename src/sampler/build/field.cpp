@@ -133,11 +133,15 @@ float Survey::albedo_at(Direction wo) const {
 }
 
 bool Survey::at_jump(Direction wo) const {
-  if (!jumps || jumps->empty()) return false;
+  if (!jumps) return false;
   const float theta = theta_of_viewer(wo);
-  return std::any_of(jumps->begin(), jumps->end(), [theta](float jump) {
-    return abs(theta - jump) < 4e-6f + 4e-7f / sin(max(jump, 1e-3f));
-  });
+  for (const ThetaJump& jump : jumps->theta_o) {
+    if (abs(theta - jump.at) < 4e-6f + 4e-7f / sin(max(jump.at, 1e-3f))) return true;
+  }
+  if (jumps->phi_o.empty()) return false;
+  const float phi = azimuth_of(wo), narrow = 4e-6f + 4e-7f / sin(max(theta, 1e-3f));
+  return std::any_of(jumps->phi_o.begin(), jumps->phi_o.end(),
+                     [&](float jump) { return abs(phi - jump) < narrow; });
 }
 
 void eval_in_parallel(const Field& field, const Host& host, Effort& effort,

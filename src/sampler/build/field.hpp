@@ -67,17 +67,27 @@ struct Effort {
 void eval_in_parallel(const Field& field, const Host& host, Effort& effort,
                       std::span<const FieldPoint> points, std::span<FieldValue> out);
 
+// Where f leaps as a whole when the viewer moves.
+struct ThetaJump {
+  float at = 0;                  // radians
+  double before = 0, after = 0;  // of the cosines, neighbouring floats where it can be told, on both sides
+};
+struct Jumps {
+  std::vector<ThetaJump> theta_o;  // ascending
+  std::vector<float> phi_o;        // radians, in the viewer's frame, ascending: found and told of
+};
+
 // What is known about a function once its domain is chosen, and by what means it is asked.
 struct Survey {
   const Field& field;
   const AlbedoTable& albedo;
   const Host& host;
   Effort& effort;
-  const std::vector<float>* jumps = nullptr;  // of theta_o
+  const Jumps* jumps = nullptr;
   std::vector<FieldPoint>* towers = nullptr;  // where the attack met values far above a bound are noted here
 
   float albedo_at(Direction wo) const;
-  // Between the two sides of a jump, 1e-6 wide, the albedo is a ramp that belongs to neither.
+  // So close to a jump that rounding decides on which side wo is.
   bool at_jump(Direction wo) const;
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
     eval_in_parallel(field, host, effort, points, out);

@@ -70,10 +70,21 @@ bool mean_disagrees(const CrossExamination& seen, const AlbedoTable& albedo) {
   return std::abs(seen.by_bounds - 1) > allowed;
 }
 
+// More than a table that says what it misses may be wrong by.
+bool albedo_disagrees(const CrossExamination& seen, const AlbedoTable& albedo) {
+  constexpr double allowed = 0.01;
+  return !seen.wrong.empty() && seen.wrong.front().miss > allowed + 3 * double(albedo.relative_error);
+}
+
 }  // namespace
 
 bool disagrees(const CrossExamination& seen, const AlbedoTable& albedo) {
-  return !seen.surprises.empty() || mean_disagrees(seen, albedo);
+  return !seen.surprises.empty() || mean_disagrees(seen, albedo) || albedo_disagrees(seen, albedo);
+}
+
+void state_misses(const CrossExamination& seen, AlbedoTable& albedo) {
+  if (seen.wrong.empty() || albedo_disagrees(seen, albedo)) return;
+  albedo.relative_error = std::max(albedo.relative_error, float(std::min(2 * seen.wrong.front().miss, 1.)));
 }
 
 void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field,
@@ -88,6 +99,21 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
       throw Error("the function is not 0 where its albedo was found to be 0", where, mend);
     throw Error(text("the function is %.3g times its bound: a lobe that no grid resolves", double(s.ratio)),
                 where, mend);
+  }
+  if (albedo_disagrees(seen, albedo)) {
+    const WrongAlbedo& w = seen.wrong.front();
+    std::string at = text("theta_o = %.4g", double(w.known[0]) * degrees);
+    if (field.axes() > 1) {
+      const Direction wo = field.to_caller(viewer_at(w.known));
+      at += text(", phi_o = %.4g degrees", std::atan2(double(wo.y), double(wo.x)) * degrees);
+    } else {
+      at += " degrees";
+    }
+    throw Error(
+        text("the albedo is %.4g at %s, and %.4g beside it: a change too narrow for its table", w.found,
+             at.c_str(), w.table),
+        name,
+        spent ? mend : "smooth the function over the viewers there, or turn it into steps between materials");
   }
   if (mean_disagrees(seen, albedo)) {
     throw Error(

@@ -13,6 +13,8 @@ namespace reflectree::detail {
 bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExamination& seen);
 // Whether trees and albedo contradict what was seen of f.
 bool disagrees(const CrossExamination& seen, const AlbedoTable& albedo);
+// Lets the table state what was found to be missed, where that is little.
+void state_misses(const CrossExamination& seen, AlbedoTable& albedo);
 // Throws Error where trees and albedo contradict what was seen of f: a sampler of them would be wrong.
 void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo, const Field& field,
                          bool spent);

@@ -5,33 +5,17 @@
 #include <cmath>
 
 #include "grow.hpp"
+#include "knots.hpp"
 #include "tighten.hpp"
 
 namespace reflectree::detail {
 
-namespace {
-
-std::vector<float> sorted_borders(std::vector<float> knots, float end) {
-  std::vector<float> borders{0, end};
-  for (const float knot : knots) {
-    if (knot > 1e-4f && knot < end - 1e-4f) borders.push_back(knot);
-  }
-  std::sort(borders.begin(), borders.end());
-  borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
-  return borders;
-}
-
-}  // namespace
-
 std::vector<Slab> first_slabs(const Survey& survey) {
   const Field& field = survey.field;
-  std::vector<float> knots = field.f.traits().theta_o_knots;
-  if (survey.jumps) knots.insert(knots.end(), survey.jumps->begin(), survey.jumps->end());
-  const std::vector<float> thetas = sorted_borders(knots, theta_max);
-  std::vector<float> phis{0, 0};
-  if (!field.frame.isotropic()) phis = sorted_borders({}, azimuth_span(field.frame.symmetry));
+  const std::vector<float> thetas = theta_borders(field, survey.jumps);
   std::vector<Slab> slabs;
   for (std::size_t i = 0; i + 1 < thetas.size(); ++i) {
+    const std::vector<float> phis = azimuth_borders(field, survey.jumps, thetas[i], thetas[i + 1]);
     for (std::size_t k = 0; k + 1 < phis.size(); ++k) {
       const KnownBox box{{thetas[i], phis[k]}, {thetas[i + 1], phis[k + 1]}, field.axes()};
       slabs.push_back(make_slab(box, survey.albedo, field));

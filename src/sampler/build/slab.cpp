@@ -66,6 +66,17 @@ std::vector<std::uint32_t> leaves_in_order(const Slab& slab) {
   return order;
 }
 
+std::uint32_t leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain) {
+  std::uint32_t i = 0;
+  while (slab.nodes[i].split != TreeSplit::leaf) {
+    const std::uint32_t child = slab.nodes[i].child;
+    const Box upper = box_of(slab.nodes[child + 1].leaf.cell, domain);
+    const bool up = slab.nodes[i].split == TreeSplit::x ? p.x >= upper.x0 : p.y >= upper.y0;
+    i = child + std::uint32_t(up);
+  }
+  return i;
+}
+
 float total(const Slab& slab, float Leaf::*member) {
   double sum = 0;
   for (const Node& node : slab.nodes) {

@@ -34,6 +34,8 @@ struct Slab {
 Slab make_slab(const KnownBox& box, const AlbedoTable& albedo, const Field& field);
 // Leaves of a slab in preorder (indices into nodes).
 std::vector<std::uint32_t> leaves_in_order(const Slab& slab);
+// The node of the leaf that holds a point of the square.
+std::uint32_t leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain);
 // Sum of a member over the leaves.
 float total(const Slab& slab, float Leaf::*member);
 float total_known_cost(const Slab& slab, int axis);

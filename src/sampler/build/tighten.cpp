@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "canonical.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 
@@ -222,6 +223,23 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
   for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->height + margin * c.value);
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     if (overshoot[s] > accepted) overshoot[s] = float(found[s]);
+  }
+}
+
+void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, const Survey& survey) {
+  const Domain& domain = survey.field.domain;
+  const Partition partition = partition_of(slabs);
+  std::vector<FieldValue> values(points.size());
+  survey.eval(points, values);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float albedo = survey.albedo_at(points[i].wo);
+    if (!(albedo > 0)) continue;
+    const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
+    Slab& slab = slabs[find_slab(partition, known)];
+    Leaf& leaf = slab.nodes[leaf_at(slab, points[i].p, domain)].leaf;
+    const float ratio = values[i].upper / albedo;
+    leaf.note(ratio, known_of(points[i].wo, slab.box.axes), points[i].p);
+    leaf.raise((1 + margin) * ratio / shape(leaf, box_of(leaf.cell, domain), points[i].p));
   }
 }
 

@@ -19,6 +19,9 @@ void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_ne
 void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
            std::vector<float>& overshoot);
 
+// Raises the bounds of leaves to what f is at points that were met outside of an attack.
+void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, const Survey& survey);
+
 // Random probes in every leaf of one-shot trees: where they show, beyond doubt, a larger root mean square
 // than the grid did, the leaf's cost is raised to it, so that growth goes on there.
 void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey);

@@ -23,6 +23,8 @@ class KlemsBasis {
   int patch_of(Direction w) const;
   // In radians.
   const std::vector<float>& ring_borders() const { return theta_; }
+  // Where patches of a ring meet, radians in [0, 2 pi); none where the ring is one patch.
+  std::vector<float> azimuth_borders(std::size_t ring) const;
   // The measure of a patch: its projected solid angle.
   double projected_solid_angle(int patch) const;
 
@@ -41,6 +43,9 @@ struct KlemsTable {
   bool seen_through = false;
   std::vector<float> values;  // [incident][exiting], not negative
 
+  float value(int in, int out) const {
+    return values[std::size_t(in) * std::size_t(exiting.size()) + std::size_t(out)];
+  }
   float operator()(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
 };

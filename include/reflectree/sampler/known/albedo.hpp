@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "reflectree/math/scalar.hpp"
@@ -11,15 +12,18 @@
 
 namespace reflectree {
 
-// Piecewise linear in cos_theta_o; of anisotropic functions cubic in phi_o, through four rows.
+// Piecewise linear in cos_theta_o. Of anisotropic functions rows at azimuths of the viewer, in segments: in
+// each the rows are equidistant, and between two of them lies the cubic through four (where there are as
+// many). The next segment begins where one ends, with a row of its own, so that what leaps there has both its
+// sides.
 struct AlbedoTable {
   std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
   std::vector<float> albedo;       // [phi_o][cos_theta_o]
   // Stated bound on the error of quadrature and interpolation up to 89.9 degrees; beyond, ten times as large.
   float relative_error = 0;
-  // Equidistant azimuths of the viewer from 0 to azimuth_span, radians; empty for isotropic functions.
+  // From 0 to azimuth_span, radians; empty for isotropic functions.
   std::vector<float> phi_o = {};
-  bool even = false;  // in phi_o about both ends, by mirror planes; else periodic
+  bool even = false;  // of a single segment: mirrored about both ends; else periodic
   friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
@@ -28,6 +32,12 @@ float albedo_at(const AlbedoTable& table, float cos_theta_o);
 float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o);
 // Throws Error unless the nodes ascend over the hemisphere and every value is a number that is not negative.
 void validate(const AlbedoTable& table);
+
+// Rows of equal distance.
+struct AlbedoSegment {
+  std::size_t first, rows;
+};
+std::vector<AlbedoSegment> segments_of(const AlbedoTable& table);
 
 struct AlbedoPiece {
   float base, slope;  // albedo = base + slope cos_theta_o
@@ -41,10 +51,14 @@ REFLECTREE_INLINE std::array<float, 4> cubic_weights(float t) {
 
 struct PackedAlbedo {
   CosineLookup lookup;
-  // [phi_o][cos_theta_o]; of anisotropic functions with a row more at both ends.
+  struct Segment {
+    float phi_o, rows_per_radian;
+    std::uint32_t first, last;  // the row before the segment's first one; the last that a cubic begins at
+  };
+  // [phi_o][cos_theta_o]; every segment with a row more at both ends.
   std::vector<AlbedoPiece> pieces;
   std::size_t row = 0;            // pieces of one azimuth
-  float azimuths_per_radian = 0;  // 0 for isotropic functions
+  std::vector<Segment> segments;  // empty for isotropic functions
 
   float at(float cos_theta_o) const {
     const AlbedoPiece& piece = pieces[lookup(cos_theta_o)];
@@ -52,17 +66,20 @@ struct PackedAlbedo {
   }
   // phi_o in [0, azimuth_span].
   float at(float cos_theta_o, float phi_o) const {
-    const std::size_t last = pieces.size() / row - 4;
-    const float x = max(phi_o * azimuths_per_radian, 0.f);
-    const std::size_t k = std::min(std::size_t(x), last);
+    const Segment& segment = segments.size() == 1 ? segments.front() : segment_at(phi_o);
+    const float x = max((phi_o - segment.phi_o) * segment.rows_per_radian, 0.f);
+    const std::size_t k = std::min(std::size_t(x), std::size_t(segment.last));
     const std::array<float, 4> weights = cubic_weights(x - float(k));
-    const AlbedoPiece* piece = pieces.data() + k * row + lookup(cos_theta_o);
+    const AlbedoPiece* piece = pieces.data() + (segment.first + k) * row + lookup(cos_theta_o);
     float sum = 0;
     for (std::size_t i = 0; i < 4; ++i, piece += row)
       sum += weights[i] * (piece->base + piece->slope * cos_theta_o);
     return max(sum, 0.f);
   }
-  std::size_t bytes() const { return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece); }
+  const Segment& segment_at(float phi_o) const;
+  std::size_t bytes() const {
+    return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece) + segments.size() * sizeof(Segment);
+  }
 };
 PackedAlbedo pack(const AlbedoTable& table);
 

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer_windows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reflectree::detail {
+
+namespace {
+
+constexpr std::size_t fewest_draws = 64, most_windows = 8;
+constexpr double suspicious = 5.5;  // standard errors
+
+struct Cell {
+  double sum = 0, square = 0;
+  std::size_t count = 0;
+};
+
+struct Window {
+  KnownBox box;
+  double z;
+};
+
+bool meet(const KnownBox& a, const KnownBox& b) {
+  for (std::size_t k = 0; k < std::size_t(a.axes); ++k) {
+    if (a.hi[k] <= b.lo[k] || b.hi[k] <= a.lo[k]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<KnownBox> odd_windows(const std::vector<ViewerDraw>& draws, const KnownBox& space) {
+  if (draws.size() < fewest_draws) return {};
+  double square = 0;
+  for (const ViewerDraw& d : draws) square += std::pow(double(d.says) - 1, 2);
+  const double usual = square / double(draws.size());  // a window of few draws may look calmer than it is
+
+  // Grids of 2^i times 2^j windows, as long as those of equal share hold enough draws.
+  int levels = 0;
+  while ((draws.size() >> (levels + 1)) >= fewest_draws) ++levels;
+  std::vector<Window> odd;
+  for (int i = 0; i <= levels; ++i) {
+    for (int j = 0; j <= (space.axes > 1 ? levels - i : 0); ++j) {
+      const std::size_t columns = std::size_t(1) << i, rows = std::size_t(1) << j;
+      std::vector<Cell> cells(columns * rows);
+      for (const ViewerDraw& d : draws) {
+        const Known share = space.share_of(d.known);
+        const auto place = [](float s, std::size_t n) {
+          return std::min(std::size_t(std::max(s, 0.f) * float(n)), n - 1);
+        };
+        Cell& cell = cells[place(share[0], columns) + columns * place(share[1], rows)];
+        const double x = double(d.says) - 1;
+        cell.sum += x, cell.square += x * x, ++cell.count;
+      }
+      for (std::size_t k = 0; k < cells.size(); ++k) {
+        const Cell& cell = cells[k];
+        if (cell.count < fewest_draws) continue;
+        const auto n = double(cell.count);
+        const double variance = std::max(cell.square / n - std::pow(cell.sum / n, 2), usual);
+        const double z = std::abs(cell.sum) / std::sqrt(n * variance + 1e-30);
+        if (!(z > suspicious)) continue;
+        KnownBox box = space;
+        const auto column = float(k % columns), row = float(k / columns);
+        box.lo = space.at({column / float(columns), row / float(rows)});
+        box.hi = space.at({(column + 1) / float(columns), (row + 1) / float(rows)});
+        odd.push_back({box, z});
+      }
+    }
+  }
+  std::stable_sort(odd.begin(), odd.end(), [](const Window& a, const Window& b) { return a.z > b.z; });
+  std::vector<KnownBox> worst;
+  for (const Window& w : odd) {
+    const bool seen =
+        std::any_of(worst.begin(), worst.end(), [&](const KnownBox& box) { return meet(box, w.box); });
+    if (!seen) worst.push_back(w.box);
+    if (worst.size() == most_windows) break;
+  }
+  return worst;
+}
+
+}  // namespace reflectree::detail

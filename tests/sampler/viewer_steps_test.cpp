@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Functions that change by steps, or within few degrees, when the viewer moves: both sides of a step are
+// right, and what is too narrow for the table of the albedo is said.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "functions.hpp"
+#include "reflectree/brdf/tables/klems_table.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/formats/sampler_file.hpp"
+
+namespace reflectree {
+namespace {
+
+bool in_wedge(Direction wo, float half_width) {
+  return std::abs(std::remainder(std::atan2(wo.y, wo.x) - 1.f, 2 * pi)) < half_width;
+}
+
+// Brighter for viewers within an azimuth.
+struct Wedge {
+  float half_width, brighter;
+  float operator()(Direction wo, Direction) const { return in_wedge(wo, half_width) ? brighter : 0.2f; }
+};
+
+// The wedge's albedo is known: pi f.
+double worst_miss(const SamplerData& data, const Wedge& f) {
+  const auto s = make_sampler(f, data);
+  Pcg32 u(5);
+  double worst = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const float phi =
+        i % 2 ? 2 * pi * to_unit_float(u()) : 1 + 1.5f * f.half_width * (2 * to_unit_float(u()) - 1);
+    if (std::abs(std::abs(phi - 1) - f.half_width) < 2e-5f) continue;
+    const Direction wo = wo_at(88 * to_unit_double(u()), double(phi));
+    const double truth = pi_v<double> * double(in_wedge(wo, f.half_width) ? f.brighter : 0.2f);
+    worst = std::max(worst, std::abs(double(s.exact.albedo(wo)) / truth - 1));
+  }
+  return worst;
+}
+
+TEST(ViewerSteps, AWedgeOfAzimuthsHasBothItsSides) {
+  for (const float width : {0.3f, 0.0524f, 0.0087f}) {
+    const Wedge f{width, 0.26f};
+    const SamplerData data = build(AnyBrdf(f));
+    EXPECT_LE(data.albedo.relative_error, 2e-4f) << width;
+    EXPECT_LE(worst_miss(data, f), double(data.albedo.relative_error)) << width;
+    EXPECT_LE(data.report.expected_trials, 1.25f) << width;
+    EXPECT_EQ(decode_sampler(encode_sampler(data), "memory"), data);
+  }
+}
+// The judge can fail: a table that knows nothing of the wedge.
+TEST(ViewerStepsTwin, ATableWithoutTheWedge) {
+  const Wedge f{0.3f, 0.26f};
+  SamplerData data = build(AnyBrdf(f));
+  std::fill(data.albedo.albedo.begin(), data.albedo.albedo.end(), 0.2f * pi);
+  EXPECT_GT(worst_miss(data, f), 0.1);
+}
+
+// Right, or a sentence: never a table that states less than it misses.
+TEST(ViewerSteps, WhatIsTooNarrowIsStatedOrRefused) {
+  const auto bump = [](float width) {
+    return [width](Direction wo, Direction) {
+      const float a = std::remainder(std::atan2(wo.y, wo.x) - 1.f, 2 * pi) / width;
+      return 0.2f * (1 + 0.3f * std::exp(-a * a));
+    };
+  };
+  for (const float width : {0.3f, 0.05f, 0.01f, 0.002f}) {
+    BuildOptions options;
+    options.albedo_error = 1e-3f, options.one_shot_variance = 0.05f;
+    const AnyBrdf f = bump(width);
+    try {
+      const SamplerData data = build(f, options);
+      const auto s = make_sampler(f, data);
+      for (const float away : {-1.f, -0.5f, 0.f, 0.4f, 1.f}) {
+        const Direction wo = wo_at(50, double(1 + away * width));
+        const double truth = pi_v<double> * double(f(shading_geometry(wo, {0, 0, 1}))[0]);
+        EXPECT_NEAR(double(s.exact.albedo(wo)) / truth, 1, double(data.albedo.relative_error)) << width;
+      }
+    } catch (const Error& error) {
+      EXPECT_LT(width, 0.005f) << error.what();
+      EXPECT_NE(std::string(error.what()).find("phi_o"), std::string::npos) << error.what();
+    }
+  }
+}
+
+// A smooth function whose period hides from few rows.
+TEST(ViewerSteps, ManyPeriodsAreSeen) {
+  const AnyBrdf f = [](Direction wo, Direction) {
+    return 0.2f * (1 + 0.3f * std::cos(16 * std::atan2(wo.y, wo.x)) * (wo.x * wo.x + wo.y * wo.y));
+  };
+  const SamplerData data = build(f);
+  const auto s = make_sampler(f, data);
+  for (int i = 0; i < 50; ++i) {
+    const Direction wo = wo_at(1 + 1.7 * i, 0.37 * i);
+    const double truth = pi_v<double> * double(f(shading_geometry(wo, {0, 0, 1}))[0]);
+    EXPECT_NEAR(double(s.exact.albedo(wo)) / truth, 1, double(data.albedo.relative_error)) << i;
+  }
+}
+
+// Three rings of 1, 6 and 8 patches, any values.
+KlemsTable patches() {
+  KlemsTable table;
+  table.incident = table.exiting = KlemsBasis({0, 0.2, 0.8, pi_v<double> / 2}, {1, 6, 8});
+  Pcg32 u(3);
+  for (int i = 0; i < 15 * 15; ++i) table.values.push_back(0.05f + 0.5f * to_unit_float(u()));
+  return table;
+}
+TEST(ViewerSteps, PatchesOfViewersAreExact) {
+  const KlemsTable table = patches();
+  const AnyBrdf f = table;
+  const SamplerData data = build(f);
+  EXPECT_FALSE(data.frame.isotropic());
+  EXPECT_LE(data.albedo.relative_error, 1.001e-4f);
+  EXPECT_LE(data.report.expected_trials, 1.25f);
+  EXPECT_LE(data.exact.size(), 20U);
+  const auto s = make_sampler(f, data);
+  Pcg32 u(4);
+  for (int i = 0; i < 2000; ++i) {
+    const Direction wo = wo_at(89.5 * to_unit_double(u()), 6.2831853 * to_unit_double(u()));
+    const double told = table.traits().albedo(wo);
+    EXPECT_NEAR(double(s.exact.albedo(wo)) / told, 1, 1e-5) << i;
+  }
+  // A hair's breadth on either side of a ring and of a patch.
+  for (const double away : {-1e-6, 1e-6}) {
+    for (const Direction wo :
+         {wo_at((0.8 + away) * 180 / pi_v<double>, 2), wo_at(60, pi_v<double> * 0.125 + 5 * away)})
+      EXPECT_NEAR(double(s.exact.albedo(wo)) / table.traits().albedo(wo), 1, 1e-5) << away;
+  }
+  for (const double theta : {5., 30., 70.}) {
+    const auto results = judge(s, target_function(f), wo_at(theta, 2), 200'000);
+    EXPECT_TRUE(all_passed(results)) << theta << '\n' << to_text(results);
+  }
+}
+// An albedo that a function tells wrongly is not believed.
+struct WrongAboutItself : KlemsTable {
+  BrdfTraits traits() const {
+    BrdfTraits t = KlemsTable::traits();
+    t.albedo = [right = t.albedo](Direction wo) { return 1.05 * right(wo); };
+    return t;
+  }
+};
+TEST(ViewerStepsTwin, AnAlbedoToldWrongly) {
+  EXPECT_THROW(build(AnyBrdf(WrongAboutItself{patches()})), Error);
+}
+
+}  // namespace
+}  // namespace reflectree
