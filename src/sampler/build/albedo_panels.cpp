@@ -47,7 +47,7 @@ void tabulate_part(const Panel& panel, const std::array<double, 5>& v, const Fac
   const float entry = cosine_of(theta_at(t1));
   const double theta = std::acos(double(entry));
   const double at_entry = albedo(clamp(4 * (theta - panel.lo) / (panel.hi - panel.lo), 0., 4.));
-  table[entry] = max(std::abs(at_entry - a1) > 0.02 * error * a1 ? at_entry : a1, 0.);
+  table[entry] = max(std::abs(at_entry - a1) > error * a1 ? at_entry : a1, 0.);
 }
 
 }  // namespace

@@ -139,7 +139,8 @@ void pack_row(const std::vector<float>& cosines, const float* albedo, std::vecto
     const double c0 = double(cosines[i]), c1 = double(cosines[i + 1]);
     const double a0 = double(albedo[i]), a1 = double(albedo[i + 1]);
     // Between neighbouring floats lies nothing; a line through both sides of a jump would lose every digit.
-    const bool neighbours = std::nextafter(cosines[i], 2.f) >= cosines[i + 1];
+    // The last line holds its upper end, too.
+    const bool neighbours = i + 2 < cosines.size() && std::nextafter(cosines[i], 2.f) >= cosines[i + 1];
     const double slope = neighbours ? 0 : (a1 - a0) / (c1 - c0);
     pieces.push_back({float(a0 - slope * c0), float(slope)});
   }
