@@ -7,6 +7,7 @@
 
 #include "reflectree/brdf/tables/difference_vector.hpp"
 #include "reflectree/math/fast_functions.hpp"
+#include "reflectree/math/prefetch.hpp"
 
 namespace reflectree {
 namespace {
@@ -96,19 +97,15 @@ Rgb bridged(const HalfAngleTable& table, const Corners& c, Rgb sum) {
   return {mean(0), mean(1), mean(2)};
 }
 
-}  // namespace
+REFLECTREE_INLINE Rgb value_of(const float* nearest) {
+  return {max(nearest[0], 0.f), max(nearest[1], 0.f), max(nearest[2], 0.f)};
+}
 
-Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
-  const Position at = position(*this, g);
-  if (lookup == TableLookup::nearest) {
-    const float* v = nearest_cell(*this, at);
-    return {max(v[0], 0.f), max(v[1], 0.f), max(v[2], 0.f)};
-  }
-  const Corners c = corners(*this, at);
+REFLECTREE_INLINE Rgb value_of(const HalfAngleTable& table, const Corners& c) {
   Rgb sum;
   std::uint32_t bits = 0;  // the sign bit is set where a corner was not measured
   const auto add = [&](int ih, int id, float weight) {
-    const float *a = cell(*this, ih, id, c.p.low), *b = cell(*this, ih, id, c.p.high);
+    const float *a = cell(table, ih, id, c.p.low), *b = cell(table, ih, id, c.p.high);
     const auto mix = [&](int k) {
       bits |= std::bit_cast<std::uint32_t>(a[k]) | std::bit_cast<std::uint32_t>(b[k]);
       return weight * linear_mix(c.p.fraction, a[k], b[k]);
@@ -119,7 +116,54 @@ Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
   add(c.h.low, c.d.high, (1 - c.h.fraction) * c.d.fraction);
   add(c.h.high, c.d.low, c.h.fraction * (1 - c.d.fraction));
   add(c.h.high, c.d.high, c.h.fraction * c.d.fraction);
-  return bits >> 31U == 0 ? sum : bridged(*this, c, sum);
+  return bits >> 31U == 0 ? sum : bridged(table, c, sum);
+}
+
+}  // namespace
+
+Rgb HalfAngleTable::operator()(const ShadingGeometry<float>& g) const {
+  const Position at = position(*this, g);
+  if (lookup == TableLookup::nearest) return value_of(nearest_cell(*this, at));
+  return value_of(*this, corners(*this, at));
+}
+
+void HalfAngleTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
+                          std::span<float> out) const {
+  std::vector<ShadingGeometry<float>> geometry;
+  geometry.reserve(wo.size());
+  for (std::size_t i = 0; i < wo.size(); ++i) geometry.push_back(shading_geometry(wo[i], wi[i]));
+  eval(geometry, out);
+}
+
+void HalfAngleTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const {
+  constexpr std::size_t block = 16;
+  for (std::size_t begin = 0; begin < geometry.size(); begin += block) {
+    const std::size_t end = std::min(begin + block, geometry.size());
+    Corners corner[block];
+    const float* nearest[block];
+    for (std::size_t i = begin; i < end; ++i) {
+      const ShadingGeometry<float>& g = geometry[i];
+      const std::size_t k = i - begin;
+      nearest[k] = nullptr;
+      if (!(g.cos_theta_o > 0 && g.cos_theta_i > 0)) continue;
+      const Position at = position(*this, g);
+      nearest[k] = nearest_cell(*this, at);
+      if (lookup == TableLookup::nearest) {
+        prefetch(nearest[k]);
+        continue;
+      }
+      const Corners& c = corner[k] = corners(*this, at);
+      for (const int h : {c.h.low, c.h.high})
+        prefetch(cell(*this, h, c.d.low, c.p.low)), prefetch(cell(*this, h, c.d.high, c.p.low));
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t k = i - begin;
+      Rgb value;
+      if (nearest[k])
+        value = lookup == TableLookup::nearest ? value_of(nearest[k]) : value_of(*this, corner[k]);
+      out[3 * i] = value.r, out[3 * i + 1] = value.g, out[3 * i + 2] = value.b;
+    }
+  }
 }
 
 Rgb HalfAngleTable::unmeasured(const ShadingGeometry<float>& g) const {

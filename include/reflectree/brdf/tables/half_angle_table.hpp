@@ -4,6 +4,7 @@
 // al. 2003, "A Data-Driven Reflectance Model".
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct HalfAngleTable {
   std::vector<float> rgb;  // [h][d][p][3]; negative: not measured
 
   Rgb operator()(const ShadingGeometry<float>& g) const;
+  // Many at once, channel by channel, 0 below the surface: their cells are on their way from memory together.
+  void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<float> out) const;
+  void eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const;
   // The share of f(wo, wi) that would come from entries that were not measured: 0 to 1 for each channel.
   Rgb unmeasured(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
