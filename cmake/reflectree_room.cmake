@@ -21,7 +21,7 @@ function(reflectree_room name)
     set(public PUBLIC)
     add_library(${target} STATIC ${ROOM_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:reflectree_options> ${ROOM_PRIVATE})
-    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "folder/file.hpp" of the room itself
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "folder/NAME.hpp" of the room itself
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # for plug-ins and Python
   else()
     set(public INTERFACE)

@@ -151,7 +151,7 @@ void add_eval(CLI::App& app, Context& context, Run& run) {
       "  reflectree eval gold.rfl --theta-o-deg 60 --theta-i-deg 50,60,70 --phi-deg 180\n"
       "  reflectree eval paper_white.bsdf --no-pdf --pairs pairs.csv -o values.npy\n"
       "Both directions point away from the surface; z is the normal; densities are per solid angle.\n"
-      "A CSV file of pairs has six numbers a line, wo and wi; or a header that names wo_x ... wi_z, or\n"
+      "A CSV file of pairs has six numbers per line, wo and wi; or a header that names wo_x ... wi_z, or\n"
       "theta_o_deg, theta_i_deg and phi_deg, in any order; further columns are left aside.");
   command->callback([&context, &run, o] { run = [&context, o] { return run_eval(context, *o); }; });
 }

@@ -171,7 +171,7 @@ TEST(Rgl, FactsCountEntriesAndValues) {
   EXPECT_EQ(facts.not_measured, 0U);
   EXPECT_EQ(facts.clipped[0], 0U);
   EXPECT_EQ(facts.clipped[2], 0U);
-  // From theta_o = 1.1 on all of green is negative; below .5 little of it.
+  // From theta_o = 1.1 on all of green is negative; below 0.5 little of it.
   const double share = double(facts.clipped[1]) / double(facts.pairs);
   EXPECT_GT(share, std::cos(1.1));
   EXPECT_LT(share, 0.8);
@@ -235,7 +235,7 @@ TEST(Rgl, DirectionsThatAreNotFiniteDoNoHarm) {
   }
 }
 
-// Values of another renderer: f cos_i, not clipped, 200 pairs a file.
+// Values of another renderer: f cos_i, not clipped, 200 pairs per file.
 struct Reference {
   std::vector<Direction> wo, wi;
   std::vector<Rgb> f_cos;

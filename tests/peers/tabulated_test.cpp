@@ -159,10 +159,9 @@ double deviation_of(const AnySampler<Spectrum>& sampler, const PeerSubject& subj
   return std::sqrt(samples * sum2 / (sum * sum) - 1);
 }
 
-// The method's own sampling tables give .03 to .31 standard deviation over mean on its files; fitted from the
-// function alone it stays within that, but for the file whose function changes most between 75 and 85
-// degrees: there even 48 elevations leave .5. A fitted cos^n lobe is the
-// twin that does not.
+// The method's own sampling tables give 0.03 to 0.31 standard deviation over mean on its files; fitted from
+// the function alone it stays within that, but for the file whose function changes most between 75 and 85
+// degrees: there even 48 elevations leave 0.5. A fitted cos^n lobe is the twin that does not.
 TEST(WarpChain, IsAsGoodAsPublishedOnItsOwnFiles) {
   if (measured("").empty()) GTEST_SKIP() << "REFLECTREE_DATA is not set";
   for (const char* name : {"cardboard", "satin_purple", "chm_mint"}) {

@@ -14,8 +14,8 @@ struct FitOptions {
   LobeKind lobe = LobeKind::ggx;  // or power, with n = 2 / alpha^2 - 2
   int thetas = 16;                // elevations looked at
   bool each_theta = false;        // true: tuned by an oracle for each of them; false: one mixture for all
-  int widths = 28;                // alpha from .002 to 1, in equal ratios
-  int weights = 24;               // of the cosine lobe, from .005 to .995, graded towards both ends
+  int widths = 28;                // alpha from 0.002 to 1, in equal ratios
+  int weights = 24;               // of the cosine lobe, from 0.005 to 0.995, graded towards both ends
   int points_a_width = 128;       // quadrature points drawn from each candidate lobe
   std::uint64_t seed = 1;
 };

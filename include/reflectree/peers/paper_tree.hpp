@@ -39,7 +39,7 @@ struct PaperOptions {
   bool retry_from_root = false;  // leaves by volume; exact whatever the errors of I
   // A node whose volume is a smaller share than this of the whole integral is not split: it can add no more
   // to the mean of the trials. Elsewhere than on the paper's disk T falls to 0 along a line that no square
-  // follows, and slivers would be split without end; .001 ends that.
+  // follows, and slivers would be split without end; 0.001 ends that.
   double negligible = 0;
   friend bool operator==(const PaperOptions&, const PaperOptions&) = default;
 };

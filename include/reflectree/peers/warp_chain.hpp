@@ -3,7 +3,7 @@
 // Acquisition and Rendering": uniform points become points of the table of the target, those become visible
 // normals, and a normal reflects wo. Fitted from any BRDF: the normals' distribution by power iteration on
 // its retro-reflection. As published it loses samples below the horizon, and all mass at normals without
-// retro-reflection: none of GGX's or of the RGL files' was found lost, but .3 of a pure Phong lobe's at
+// retro-reflection: none of GGX's or of the RGL files' was found lost, but 0.3 of a pure Phong lobe's at
 // grazing wo, which does not return to wo from beyond 45 degrees.
 #pragma once
 
