@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 # A room is a static library of the sources in its folder (or headers alone), with a folder in include/ and one
-# in src/; the arrows between rooms are text, math <- brdf <- sampler <- formats <- everything else, kept by tests/guard/layers.py.
+# in src/; the arrows between rooms are text, math <- brdf <- sampler <- formats <- everything else, kept by
+# tests/guard/layers.py.
 #
-# reflectree_room(name [SOURCES a.cpp ...] USES reflectree::math ... PRIVATE PNG::PNG ... PACKAGES "embree 3" ...)
+# reflectree_room(name [SOURCES a.cpp ...] USES reflectree::math ... PRIVATE PNG::PNG ... PACKAGES "embree 3" ...
+#                 PKGCONFIG libpng -lembree3 ...)
 # makes reflectree::name. A used target is called package::target; the installed package looks for exactly
 # those packages, and for PACKAGES, when a consumer asks for the room. What is but headers, and seen by our
-# sources alone, is $<BUILD_INTERFACE:...>: a consumer does not need it.
+# sources alone, is $<BUILD_INTERFACE:...>: a consumer does not need it. PKGCONFIG names the same libraries for
+# pkg-config: by their .pc file, or as -lname where they have none.
 include(GNUInstallDirs)
 
 function(reflectree_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE;PACKAGES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;PRIVATE;PACKAGES;PKGCONFIG" ${ARGN})
   set(target reflectree_${name})
   if(NOT ROOM_SOURCES)
     file(GLOB_RECURSE ROOM_SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
@@ -18,7 +21,7 @@ function(reflectree_room name)
     set(public PUBLIC)
     add_library(${target} STATIC ${ROOM_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:reflectree_options> ${ROOM_PRIVATE})
-    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "folder/file.hpp" of the room itself
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "folder/NAME.hpp" of the room itself
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # for plug-ins and Python
   else()
     set(public INTERFACE)
@@ -44,4 +47,5 @@ function(reflectree_room name)
   set_property(GLOBAL APPEND PROPERTY REFLECTREE_BUILT_ROOMS ${name})
   set_property(GLOBAL PROPERTY REFLECTREE_${name}_USES "${rooms}")
   set_property(GLOBAL PROPERTY REFLECTREE_${name}_PACKAGES "${packages}")
+  set_property(GLOBAL PROPERTY REFLECTREE_${name}_PKGCONFIG "${ROOM_PKGCONFIG}")
 endfunction()

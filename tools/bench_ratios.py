@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the micro benchmark and prints a table: nanoseconds a direction, and their ratio to the floor.
+"""Runs the micro benchmark and prints a table: nanoseconds per direction, and their ratio to the floor.
 
 The floor is cosine_hemisphere of the same run. Figures are medians of CPU time over repetitions that are
 interleaved at random, so that what else the machine does falls on all of them alike.
@@ -40,7 +40,7 @@ def medians(arguments: argparse.Namespace) -> dict[str, float]:
 
 def table(nanoseconds: dict[str, float]) -> str:
     floor = nanoseconds[FLOOR]
-    rows = ["| benchmark | ns a direction | ratio to the floor |", "|---|---:|---:|"]
+    rows = ["| benchmark | ns per direction | ratio to the floor |", "|---|---:|---:|"]
     for name, time in sorted(nanoseconds.items(), key=lambda item: (item[0] != FLOOR, item[0])):
         title, _, milli = name.partition("/")
         alpha = f", alpha = {int(milli) / 1000:g}" if milli else ""

@@ -35,7 +35,7 @@ nlohmann::ordered_json json_of(const study::MaterialResult& material);
 study::MaterialResult material_from(const nlohmann::ordered_json& json);
 nlohmann::ordered_json json_of(const study::Verdict& verdict);
 
-// A line a material, sampler and theta_o.
+// A line per material, sampler and theta_o.
 std::string csv_of(std::span<const study::MaterialResult> materials,
                    std::span<const study::Illumination> lights, const study::StudyOptions& options);
 

@@ -58,7 +58,7 @@ std::vector<draw::Figure> all_figures(const draw::ReportMaterial& material) {
   return figures;
 }
 
-// One SVG a picture, and the page.
+// One SVG per picture, and the page.
 std::vector<std::string> write_folder(const std::string& folder, const draw::ReportMaterial& material,
                                       const std::string& html) {
   static constexpr const char* names[] = {"target", "tree", "samples", "lobe"};

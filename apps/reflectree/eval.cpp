@@ -6,10 +6,8 @@
 #include "eval_pairs.hpp"
 #include "interrupt.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/formats/file.hpp"
-#include "reflectree/formats/npy.hpp"
 #include "reflectree/formats/sampler_file.hpp"
-#include "reflectree/text/number_text.hpp"
+#include "rows.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -22,15 +20,6 @@ struct Options {
   bool no_pdf = false;
   BuildChoices choices;
 };
-
-struct Rows {
-  std::vector<std::string> columns;
-  std::vector<float> values;  // row after row
-};
-
-std::string channel_name(const std::string& stem, int c, int channels) {
-  return stem + "_" + (channels == 3 ? std::string(1, "rgb"[c]) : std::to_string(c));
-}
 
 // `sampler`: nullptr where the densities are not asked for.
 Rows evaluate(const AnyBrdf& f, const Sampler<AnyBrdf>* sampler, const DirectionPairs& pairs) {
@@ -62,27 +51,6 @@ Rows evaluate(const AnyBrdf& f, const Sampler<AnyBrdf>* sampler, const Direction
   return rows;
 }
 
-std::string csv(const Rows& rows) {
-  std::string text;
-  for (const std::string& name : rows.columns) text += (text.empty() ? "" : ",") + name;
-  text += '\n';
-  for (std::size_t i = 0; i < rows.values.size(); ++i) {
-    text += shortest_text(rows.values[i]);
-    text += (i + 1) % rows.columns.size() ? ',' : '\n';
-  }
-  return text;
-}
-
-Json json_rows(const Rows& rows) {
-  Json all = Json::array();
-  for (std::size_t i = 0; i < rows.values.size(); i += rows.columns.size()) {
-    Json row = Json::array();
-    for (std::size_t k = 0; k < rows.columns.size(); ++k) row.push_back(shortest(rows.values[i + k]));
-    all.push_back(std::move(row));
-  }
-  return all;
-}
-
 int run_eval(const Context& context, const Options& o) {
   const DirectionPairs pairs = read_pairs(o.pairs);  // before a build of minutes
   std::string material;
@@ -97,25 +65,9 @@ int run_eval(const Context& context, const Options& o) {
     material = subject.data.material;
     rows = evaluate(subject.f, &subject.sampler, pairs);
   }
-  const std::size_t shape[] = {pairs.wo.size(), rows.columns.size()};
-  if (o.output.ends_with(".npy")) {
-    const std::vector<double> wide(rows.values.begin(), rows.values.end());
-    write_file_atomically(o.output, ByteView(encode_npy(wide, shape)));
-  } else if (!o.output.empty()) {
-    write_file_atomically(o.output, csv(rows));
-  } else if (!context.json) {
-    context.print(csv(rows));
-  }
-  if (context.json) {
-    Json json{{"material", material}, {"pairs", shape[0]}, {"columns", rows.columns}};
-    if (o.output.empty()) {
-      json["rows"] = json_rows(rows);
-    } else {
-      json["output"] = o.output;
-    }
-    context.print_json("eval", json);
-  }
-  if (!o.output.empty()) context.say(fmt::format("saved {} ({} rows)", o.output, shape[0]));
+  rows.doubles = true;
+  put_out(context, "eval", {{"material", material}, {"pairs", pairs.wo.size()}}, rows, o.output);
+  if (!o.output.empty()) context.say(fmt::format("saved {} ({} rows)", o.output, rows.count()));
   return exit_success;
 }
 
@@ -151,7 +103,7 @@ void add_eval(CLI::App& app, Context& context, Run& run) {
       "  reflectree eval gold.rfl --theta-o-deg 60 --theta-i-deg 50,60,70 --phi-deg 180\n"
       "  reflectree eval paper_white.bsdf --no-pdf --pairs pairs.csv -o values.npy\n"
       "Both directions point away from the surface; z is the normal; densities are per solid angle.\n"
-      "A CSV file of pairs has six numbers a line, wo and wi; or a header that names wo_x ... wi_z, or\n"
+      "A CSV file of pairs has six numbers per line, wo and wi; or a header that names wo_x ... wi_z, or\n"
       "theta_o_deg, theta_i_deg and phi_deg, in any order; further columns are left aside.");
   command->callback([&context, &run, o] { run = [&context, o] { return run_eval(context, *o); }; });
 }

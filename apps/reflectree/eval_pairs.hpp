@@ -19,7 +19,7 @@ struct DirectionPairs {
   std::vector<Direction> wo, wi;
 };
 
-// A vector may be .001 too long or too short, as rounding in text makes it, and is normalised. Of two lists
+// A vector may be 0.001 too long or too short, as rounding in text makes it, and is normalised. Of two lists
 // in the arguments, one may hold a single entry for all of the other's. Throws Error, naming line and column
 // or the argument, for what is no pair of unit vectors above the surface.
 DirectionPairs read_pairs(const PairWords& words);

@@ -18,7 +18,7 @@ bool any(const Counts& counts) { return counts != Counts{}; }
 
 double degrees(float radians) { return double(radians) * 180 / pi_v<double>; }
 
-// "red 1 %, green 0, blue .3 % of 20000 random pairs"
+// "red 1 %, green 0, blue 0.3 % of 20000 random pairs"
 std::string by_channel(const Counts& counts, std::uint64_t pairs, int channels) {
   if (channels == 1) return fmt::format("{} of {} random pairs", percent(counts[0], pairs), pairs);
   return fmt::format("red {}, green {}, blue {} of {} random pairs", percent(counts[0], pairs),

@@ -6,7 +6,7 @@
 
 namespace reflectree::cli {
 
-// A material's part of a page, with `samples` exact directions a view.
+// A material's part of a page, with `samples` exact directions per view.
 draw::ReportMaterial draw_material(const OpenedSampler& subject, const std::vector<double>& theta_o_deg,
                                    std::size_t samples, std::uint64_t seed);
 // Throws Error where it cannot.

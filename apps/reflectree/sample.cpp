@@ -4,9 +4,7 @@
 #include "interrupt.hpp"
 #include "measure.hpp"
 #include "reflectree/error.hpp"
-#include "reflectree/formats/file.hpp"
-#include "reflectree/formats/npy.hpp"
-#include "reflectree/text/number_text.hpp"
+#include "rows.hpp"
 #include "subject.hpp"
 
 namespace reflectree::cli {
@@ -21,9 +19,7 @@ struct Options {
 };
 
 struct Samples {
-  std::size_t columns = 0;    // wi_x wi_y wi_z pdf weight...
-  std::vector<float> values;  // row after row
-  std::size_t rows() const { return values.size() / columns; }
+  Rows rows;
   std::uint64_t none = 0;  // "no sample"
 };
 
@@ -31,7 +27,10 @@ template <class Draw>
 Samples draw_samples(const OpenedSampler& subject, Direction wo, const Options& o, std::uint64_t seed,
                      const Draw& draw) {
   Samples samples;
-  samples.columns = 4 + std::size_t(subject.f.channels());
+  samples.rows.columns = {"wi_x", "wi_y", "wi_z", "pdf"};
+  const int channels = subject.f.channels();
+  for (int c = 0; c < channels; ++c) samples.rows.columns.push_back(channel_name("weight", c, channels));
+  std::vector<float>& values = samples.rows.values;
   Pcg32 u(seed);
   for (std::uint64_t i = 0; i < o.count; ++i) {
     if (i % 4096 == 0 && interrupted()) throw Cancelled();
@@ -40,29 +39,10 @@ Samples draw_samples(const OpenedSampler& subject, Direction wo, const Options& 
       ++samples.none;
       continue;
     }
-    samples.values.insert(samples.values.end(), {s->wi.x, s->wi.y, s->wi.z, s->pdf});
-    for (int c = 0; c < subject.f.channels(); ++c) samples.values.push_back(channel_value(s->weight, c));
+    values.insert(values.end(), {s->wi.x, s->wi.y, s->wi.z, s->pdf});
+    for (int c = 0; c < channels; ++c) values.push_back(channel_value(s->weight, c));
   }
   return samples;
-}
-
-std::vector<std::string> column_names(int channels) {
-  std::vector<std::string> names{"wi_x", "wi_y", "wi_z", "pdf"};
-  for (int c = 0; c < channels; ++c) {
-    names.push_back("weight_" + (channels == 3 ? std::string(1, "rgb"[c]) : std::to_string(c)));
-  }
-  return names;
-}
-
-std::string csv(const Samples& samples, const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
-  text += '\n';
-  for (std::size_t i = 0; i < samples.values.size(); ++i) {
-    text += shortest_text(samples.values[i]);
-    text += (i + 1) % samples.columns ? ',' : '\n';
-  }
-  return text;
 }
 
 int run_sample(const Context& context, const Options& o) {
@@ -79,34 +59,13 @@ int run_sample(const Context& context, const Options& o) {
                                              [&](Direction w, Pcg32& u) { return s.exact.sample(w, u); })
                               : draw_samples(subject, wo, o, context.seed,
                                              [&](Direction w, Pcg32& u) { return s.one_shot.sample(w, u); });
-  const std::vector<std::string> names = column_names(subject.f.channels());
-  if (o.output.ends_with(".npy")) {
-    const std::size_t shape[] = {samples.rows(), samples.columns};
-    write_file_atomically(o.output, ByteView(encode_npy(samples.values, shape)));
-  } else if (!o.output.empty()) {
-    write_file_atomically(o.output, csv(samples, names));
-  } else if (!context.json) {
-    context.print(csv(samples, names));
-  }
-  if (context.json) {
-    Json json{{"material", subject.data.material}, {"mode", o.mode},       {"theta_o_deg", o.theta_o_deg},
-              {"phi_o_deg", o.phi_o_deg},          {"seed", context.seed}, {"samples", samples.rows()},
-              {"no_sample", samples.none},         {"columns", names}};
-    if (o.output.empty()) {
-      json["rows"] = Json::array();
-      for (std::size_t i = 0; i < samples.rows(); ++i) {
-        const auto row = samples.values.begin() + std::ptrdiff_t(i * samples.columns);
-        Json numbers = Json::array();
-        for (std::size_t k = 0; k < samples.columns; ++k) numbers.push_back(shortest(row[std::ptrdiff_t(k)]));
-        json["rows"].push_back(std::move(numbers));
-      }
-    } else {
-      json["output"] = o.output;
-    }
-    context.print_json("sample", json);
-  }
+  const Json json{
+      {"material", subject.data.material}, {"mode", o.mode},       {"theta_o_deg", o.theta_o_deg},
+      {"phi_o_deg", o.phi_o_deg},          {"seed", context.seed}, {"samples", samples.rows.count()},
+      {"no_sample", samples.none}};
+  put_out(context, "sample", json, samples.rows, o.output);
   if (samples.none) context.say(fmt::format("{} of {} draws were \"no sample\"", samples.none, o.count));
-  if (!o.output.empty()) context.say(fmt::format("saved {} ({} rows)", o.output, samples.rows()));
+  if (!o.output.empty()) context.say(fmt::format("saved {} ({} rows)", o.output, samples.rows.count()));
   return exit_success;
 }
 

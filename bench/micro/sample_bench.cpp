@@ -87,7 +87,7 @@ void one_shot_monotone(benchmark::State& state) {
 }
 BENCHMARK(one_shot_monotone)->Arg(300)->Arg(100)->Arg(10);
 
-// 256 directions a call; the time is that of the call, items_per_second counts directions.
+// 256 directions per call; the time is that of the call, items_per_second counts directions.
 constexpr std::size_t batch_size = 256;
 template <class Draw>
 void run_batches(benchmark::State& state, Draw&& draw) {

@@ -4,7 +4,7 @@
 
     REFLECTREE_DATA=... bench/mitsuba/beside_mitsuba.py [--reflectree build/bin/reflectree] [--spp 32]
 
-Speed is paths a second of processor time (all threads; user and system), so that what else the machine does
+Speed is paths per second of processor time (all threads; user and system), so that what else the machine does
 cancels; the time of loading a scene and of compiling kernels is left out: ours is the difference of two renders,
 Mitsuba's is that of a render after a first one. The programs take turns, and medians are shown. Equal time is
 equal processor time: relMSE times the time it took, since it falls as one over the number of samples.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every word of Mitsuba's XML that we read, as a small scene rendered by both: a table, a row a word.
+"""Every word of Mitsuba's XML that we read, as a small scene rendered by both: a table, a row per word.
 
     bench/mitsuba/words.py [--reflectree build/bin/reflectree] [--table docs/results/mitsuba-words.md]
                            [--store] [--only TEXT] [--venv build/mitsuba]

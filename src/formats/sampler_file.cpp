@@ -72,7 +72,7 @@ void append_chunk(Bytes& out, std::string_view tag, const Bytes& payload, std::u
 
 constexpr std::uint32_t max_slabs = 60000, max_coordinates = 8;
 
-// A length that the rest of the chunk can hold, at `bytes_each` (or more) bytes an item.
+// A length that the rest of the chunk can hold, at `bytes_each` (or more) bytes per item.
 std::uint32_t read_count(ByteReader& in, std::uint64_t bytes_each, std::uint32_t limit = 0xffffffffU) {
   const std::uint32_t count = in.u32();
   if (count > limit || count * bytes_each > in.remaining()) {

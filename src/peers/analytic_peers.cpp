@@ -20,15 +20,18 @@ LobeMixture fitted(const PeerSubject& subject, const Host& host, LobeKind lobe, 
   FitOptions options;
   options.lobe = lobe;
   options.each_theta = oracle;
-  if (oracle) options.thetas = 90;
+  const bool isotropic = subject.f.traits().isotropic;
+  if (oracle) options.thetas = isotropic ? 90 : 30;
+  if (!isotropic && !oracle) options.thetas = 8;
   return fit_mixture(subject.f, subject.target, options, host);
 }
 
 }  // namespace
 
 Made paper(const PeerSubject& subject, const Host& host) {
-  if (!subject.f.traits().isotropic) return std::nullopt;
-  PaperSampler sampler(subject.f, subject.target, PaperOptions{}, host);
+  PaperOptions options;
+  if (!subject.f.traits().isotropic) options.thetas = 30, options.phis = 24;
+  PaperSampler sampler(subject.f, subject.target, options, host);
   const std::size_t bytes = sampler.bytes();
   return AnySampler<Spectrum>("paper", std::move(sampler), bytes);
 }
@@ -45,6 +48,11 @@ Made textbook(const PeerSubject& subject, const Host&) {
   auto mixture = textbook_mixture(subject.material);
   if (!mixture) return std::nullopt;
   return weighted("textbook", subject, std::move(*mixture));
+}
+Made textbook_bounded(const PeerSubject& subject, const Host&) {
+  auto mixture = bounded_mixture(subject.material);
+  if (!mixture) return std::nullopt;
+  return weighted("textbook-bounded", subject, std::move(*mixture));
 }
 Made proxy(const PeerSubject& subject, const Host& host) {
   return weighted("proxy", subject, fitted(subject, host, LobeKind::ggx));

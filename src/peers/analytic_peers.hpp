@@ -13,6 +13,7 @@ Made uniform(const PeerSubject&, const Host&);
 Made cosine(const PeerSubject&, const Host&);
 Made lafortune_willems(const PeerSubject&, const Host&);
 Made textbook(const PeerSubject&, const Host&);
+Made textbook_bounded(const PeerSubject&, const Host&);
 Made proxy(const PeerSubject&, const Host&);
 Made proxy_oracle(const PeerSubject&, const Host&);
 Made resampling(const PeerSubject&, const Host&);

@@ -46,40 +46,49 @@ FactoredDensity::FactoredDensity(SquareChart chart, std::vector<float> theta_o, 
       u_(std::move(u)),
       v_(std::move(v)) {}
 
-float FactoredDensity::weight(std::size_t angle, float t, std::size_t term) const {
-  const float* w = weight_.data() + angle * u_.size() + term;
-  return linear_mix(t, w[0], w[u_.size()]);
+float FactoredDensity::weight(const WeightsAt& at, std::size_t term) const {
+  const std::size_t terms = u_.size();
+  const auto of = [&](std::size_t azimuth) {
+    const float* w = weight_.data() + (azimuth * theta_o_.size() + at.theta.below) * terms + term;
+    return linear_mix(at.theta.t, w[0], w[terms]);
+  };
+  return at.phi.t > 0 ? linear_mix(at.phi.t, of(at.phi.below), of(at.phi.above)) : of(at.phi.below);
 }
 
-float FactoredDensity::pdf_square(std::size_t angle, float t, Vec2<float> p) const {
+FactoredDensity::WeightsAt FactoredDensity::weights_at(Direction wo) const {
+  return {locate_angle(theta_o_, theta_of(wo)),
+          locate_azimuth(weight_.size() / (theta_o_.size() * u_.size()), wo)};
+}
+
+float FactoredDensity::pdf_square(const WeightsAt& at, Vec2<float> p) const {
   float sum = 0;
-  for (std::size_t l = 0; l < u_.size(); ++l) sum += weight(angle, t, l) * u_[l].pdf(p.x) * v_[l].pdf(p.y);
+  for (std::size_t l = 0; l < u_.size(); ++l) sum += weight(at, l) * u_[l].pdf(p.x) * v_[l].pdf(p.y);
   return sum;
 }
 
 std::optional<DrawnFromDensity> FactoredDensity::sample(Direction wo, UniformBits& u) const {
   const AzimuthFrame frame(wo);
   const Direction local{frame.sin_theta, 0, wo.z};
-  const auto [angle, t] = locate_angle(theta_o_, theta_of(local));
+  const WeightsAt at = weights_at(wo);
   const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
   double rest = to_unit_double(u());
   std::size_t term = 0;
   for (; term + 1 < u_.size(); ++term) {
-    rest -= double(weight(angle, t, term));
+    rest -= double(weight(at, term));
     if (rest < 0) break;
   }
   const Vec2<float> p{u_[term].sample(u1), v_[term].sample(u2)};
   const ChartPoint point = chart_point(chart_, local, p);
   if (!(point.wi.z > 0) || !(point.jacobian > 0)) return std::nullopt;
-  return DrawnFromDensity{normalize(frame.to_world(point.wi)), pdf_square(angle, t, p) / point.jacobian};
+  return DrawnFromDensity{normalize(frame.to_world(point.wi)), pdf_square(at, p) / point.jacobian};
 }
 
 float FactoredDensity::pdf(Direction wo, Direction wi) const {
   const AzimuthFrame frame(wo);
   const Direction local{frame.sin_theta, 0, wo.z};
   const ChartPlace place = chart_place(chart_, local, frame.to_local(wi));
-  const auto [angle, t] = locate_angle(theta_o_, theta_of(local));
-  return place.jacobian > 0 ? pdf_square(angle, t, place.p) / place.jacobian : 0.f;
+  const WeightsAt at = weights_at(wo);
+  return place.jacobian > 0 ? pdf_square(at, place.p) / place.jacobian : 0.f;
 }
 
 std::size_t FactoredDensity::bytes() const {
@@ -92,12 +101,13 @@ std::size_t FactoredDensity::bytes() const {
 // The matrix holds f cos_i with the Jacobian, 4 (wo . wh) sin theta_h d(theta_h, phi_h), as a density over
 // (x, y) must; its rows are scaled to sum 1, since each wo draws from a density of its own.
 FactoredDensity fit_factored(const AnyBrdf& f, Target target, SquareChart chart, std::vector<float> theta_o,
-                             const FactoredOptions& options) {
-  const int rows = int(theta_o.size()), width = options.width, height = options.height;
+                             const FactoredOptions& options, std::size_t azimuths) {
+  const int rows = int(azimuths * theta_o.size()), width = options.width, height = options.height;
   const auto n = std::size_t(width) * std::size_t(height);
   std::vector<float> matrix;
-  for (const float theta : theta_o) {
-    auto row = chart_cells(f, target, chart, theta, width, height, 0);
+  for (std::size_t i = 0; i < std::size_t(rows); ++i) {
+    const float theta = theta_o[i % theta_o.size()], phi = azimuth_of(i / theta_o.size(), azimuths);
+    auto row = chart_cells(f, target, chart, theta, width, height, 0, phi);
     double sum = 0;
     for (const float v : row) sum += double(v);
     for (const float v : row) matrix.push_back(sum > 0 ? float(double(v) / sum) : 1 / float(n));
@@ -124,7 +134,7 @@ FactoredDensity fit_factored(const AnyBrdf& f, Target target, SquareChart chart,
     }
   }
   std::vector<float> weight;
-  for (std::size_t i = 0; i < theta_o.size(); ++i) {
+  for (std::size_t i = 0; i < std::size_t(rows); ++i) {
     double sum = 0;
     const std::size_t first = weight.size();
     for (std::size_t l = 0; l < u.size(); ++l) {

@@ -26,12 +26,21 @@ Direction sample_power(const ProposalLobe& lobe, Direction wo, float u1, float u
   return to_world(frame_from_normal(power_axis(lobe, wo)), Direction{r * cos(phi), r * sin(phi), 1 - v});
 }
 
+// How much of the spherical cap remains once normals that reflect below the horizon are bounded away: 1 for
+// all of it. Listing 2 of Tokuyoshi and Eto 2024, "Bounded VNDF Sampling for the Smith-GGX BRDF".
+float cap_share(const ProposalLobe& lobe, Direction wo) {
+  if (lobe.kind != LobeKind::ggx_bounded) return 1;
+  const float narrow2 = sqr(std::min({lobe.a, lobe.b, 1.f}));
+  const float s2 = sqr(1 + sqrt(wo.x * wo.x + wo.y * wo.y));
+  return (1 - narrow2) * s2 / (s2 + narrow2 * sqr(wo.z));
+}
+
 // A point uniform on the cap of the unit sphere that the stretched wo lights, plus that wo.
-Direction sample_ggx_half(float alpha, Direction wo, float u1, float u2) {
-  const Direction s = normalize(Direction{alpha * wo.x, alpha * wo.y, wo.z});
-  const float z = 1 - u1 * (1 + s.z), r = sqrt(max(1 - z * z, 0.f)), phi = 2 * pi * u2;
+Direction sample_ggx_half(const ProposalLobe& lobe, Direction wo, float u1, float u2) {
+  const Direction s = normalize(Direction{lobe.a * wo.x, lobe.b * wo.y, wo.z});
+  const float z = 1 - u1 * (1 + cap_share(lobe, wo) * s.z), r = sqrt(max(1 - z * z, 0.f)), phi = 2 * pi * u2;
   const Direction h = Direction{r * cos(phi), r * sin(phi), z} + s;
-  return unit_or_up({alpha * h.x, alpha * h.y, max(h.z, 0.f)});
+  return unit_or_up({lobe.a * h.x, lobe.b * h.y, max(h.z, 0.f)});
 }
 
 Direction sample_gaussian_half(const ProposalLobe& lobe, float u1, float u2) {
@@ -62,16 +71,26 @@ float half_pdf(const ProposalLobe& lobe, Direction wh) {
 }  // namespace
 
 std::optional<Direction> ProposalLobe::sample(Direction wo, UniformBits& u) const {
+  const auto wi = sample_own(in_frame_of(phi, wo), u);
+  if (!wi || phi.degrees == 0) return wi;
+  return Direction{phi.cosine * wi->x - phi.sine * wi->y, phi.sine * wi->x + phi.cosine * wi->y, wi->z};
+}
+
+float ProposalLobe::pdf(Direction wo, Direction wi) const {
+  return pdf_own(in_frame_of(phi, wo), in_frame_of(phi, wi));
+}
+
+std::optional<Direction> ProposalLobe::sample_own(Direction wo, UniformBits& u) const {
   const float u1 = positive_unit(u), u2 = to_unit_float(u());
   Direction wi;
   if (kind == LobeKind::uniform || kind == LobeKind::cosine) {
     const float z = kind == LobeKind::uniform ? u1 : sqrt(u1);
-    const float r = sqrt(max(1 - z * z, 0.f)), phi = 2 * pi * u2;
-    wi = {r * cos(phi), r * sin(phi), z};
+    const float r = sqrt(max(1 - z * z, 0.f)), azimuth = 2 * pi * u2;
+    wi = {r * cos(azimuth), r * sin(azimuth), z};
   } else if (kind == LobeKind::power) {
     wi = sample_power(*this, wo, u1, u2);
   } else {
-    const Direction wh = kind == LobeKind::ggx        ? sample_ggx_half(a, wo, u1, u2)
+    const Direction wh = is_ggx()                     ? sample_ggx_half(*this, wo, u1, u2)
                          : kind == LobeKind::gaussian ? sample_gaussian_half(*this, u1, u2)
                                                       : sample_half_power(*this, u1, u2);
     if (!(dot(wo, wh) > 0)) return std::nullopt;
@@ -81,15 +100,18 @@ std::optional<Direction> ProposalLobe::sample(Direction wo, UniformBits& u) cons
   return wi;
 }
 
-float ProposalLobe::pdf(Direction wo, Direction wi) const {
+float ProposalLobe::pdf_own(Direction wo, Direction wi) const {
   if (!(wo.z > 0 && wi.z > 0)) return 0;
   if (kind == LobeKind::uniform) return 1 / (2 * pi);
   if (kind == LobeKind::cosine) return wi.z / pi;
   if (kind == LobeKind::power) return (a + 1) / (2 * pi) * cos_power(versine(wi, power_axis(*this, wo)), a);
   const ShadingGeometry<float> g = shading_geometry(wo, wi);
-  if (kind == LobeKind::ggx) {
+  if (is_ggx()) {
     // G1 D cos_d / cos_o over the reflection's 4 cos_d; Heitz 2014, eq. 16 and 43.
-    return ggx_distribution(g.wh, a) / (2 * (wo.z + sqrt(a * a + (1 - a * a) * wo.z * wo.z)));
+    const float own = cap_share(*this, wo) * wo.z;
+    if (a == b) return ggx_distribution(g.wh, a) / (2 * (own + sqrt(a * a + (1 - a * a) * wo.z * wo.z)));
+    return ggx_distribution(g.wh, Widths(a, b)) /
+           (2 * (own + sqrt(sqr(wo.z) + sqr(a * wo.x) + sqr(b * wo.y))));
   }
   return half_pdf(*this, g.wh) / (4 * g.cos_theta_d);
 }

@@ -6,6 +6,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/peers/lobe.hpp"
 #include "reflectree/peers/paper_choice.hpp"
+#include "reflectree/peers/sliced_density.hpp"
 
 namespace reflectree {
 
@@ -34,15 +35,18 @@ Point wide_point(UniformBits& u) {
 
 std::vector<PaperTree> tabulated(const AnyBrdf& f, Target target, const PaperOptions& options,
                                  const Host& host) {
-  if (!f.traits().isotropic) {
-    throw Error("the paper's tables serve isotropic functions only", f.traits().name,
-                "build the tree for a single wo instead");
+  if (!f.traits().isotropic && options.phis < 2) {
+    throw Error("one azimuth of wo serves isotropic functions only", f.traits().name,
+                "tabulate more azimuths, or build the tree for a single wo");
   }
-  std::vector<PaperTree> trees(std::size_t(options.thetas));
+  const auto thetas = std::size_t(options.thetas), phis = std::size_t(options.phis);
+  std::vector<PaperTree> trees(phis * thetas);
   const auto work = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const double theta = row_theta_o(i, trees.size());
-      trees[i] = build_paper_tree(f, target, {float(std::sin(theta)), 0, float(std::cos(theta))}, options);
+      const double theta = row_theta_o(i % thetas, thetas);
+      const Direction wo{float(std::sin(theta)), 0, float(std::cos(theta))};
+      const float phi = azimuth_of(i / thetas, phis);
+      trees[i] = build_paper_tree(f, target, turned(wo, {std::cos(phi), std::sin(phi), 0}), options);
     }
   };
   if (f.traits().concurrent) {
@@ -74,28 +78,45 @@ PaperSampler::Reading PaperSampler::reading(Direction wo) const {
     r.wo = wo, r.trees[0] = &trees[0];
     return r;
   }
-  r.wo = {sqrt(wo.x * wo.x + wo.y * wo.y), 0, wo.z};
-  const double last = double(trees.size() - 1);
-  const double row = double(theta_of(wo)) / (pi_v<double> / 2) * double(trees.size()) - 0.5;
+  const auto phis = std::size_t(options_.phis), thetas = trees.size() / phis;
+  r.wo = phis > 1 ? wo : Direction{sqrt(wo.x * wo.x + wo.y * wo.y), 0, wo.z};
+  const double last = double(thetas - 1);
+  const double row = double(theta_of(wo)) / (pi_v<double> / 2) * double(thetas) - 0.5;
   const double place = std::clamp(row, 0.0, last);
+  const AzimuthPosition phi = locate_azimuth(phis, wo);
   if (options_.between == PaperBetween::nearest) {
-    r.trees[0] = &trees[std::size_t(std::round(place))];
+    r.trees[0] = &trees[(phi.t < 0.5f ? phi.below : phi.above) * thetas + std::size_t(std::round(place))];
     return r;
   }
   const auto lower = std::size_t(place);
-  r.trees[0] = &trees[lower];
-  if (place > double(lower)) {
-    r.trees[1] = &trees[lower + 1];
-    r.shares[1] = place - double(lower), r.shares[0] = 1 - r.shares[1];
-  }
+  const double above = place - double(lower);
+  r.count = 0;
+  const auto add = [&](std::size_t azimuth, double share) {
+    const PaperTree* tree = &trees[azimuth * thetas + lower];
+    r.trees[r.count] = tree, r.shares[r.count++] = above > 0 ? share * (1 - above) : share;
+    if (above > 0) r.trees[r.count] = tree + 1, r.shares[r.count++] = share * above;
+  };
+  add(phi.below, 1 - double(phi.t));
+  if (phi.t > 0) add(phi.above, double(phi.t));
   return r;
+}
+
+// Isotropic functions have but one azimuth, that of r.wo; a fixed wo serves as it is.
+Direction PaperSampler::to_tree(const Reading& r, const PaperTree& tree, Direction wi) const {
+  if (fixed_wo_ || options_.phis == 1) return wi;
+  return turned(turned(wi, {r.wo.x, -r.wo.y, r.wo.z}), tree.wo);
+}
+Direction PaperSampler::from_tree(const Reading& r, const PaperTree& tree, Direction wi) const {
+  if (fixed_wo_ || options_.phis == 1) return wi;
+  return turned(turned(wi, {tree.wo.x, -tree.wo.y, tree.wo.z}), r.wo);
 }
 
 double PaperSampler::density(const Reading& r, Direction wi) const {
   double sum = 0;  // per area of the disk
-  for (int k = 0; k < 2; ++k) {
-    if (!r.trees[k] || !(r.trees[k]->albedo() > 0)) continue;
-    const Direction wo = r.trees[k]->wo, w = carried(options_.map, r.wo, wi, wo);
+  for (int k = 0; k < r.count; ++k) {
+    if (!(r.trees[k]->albedo() > 0)) continue;
+    const Direction wo = r.trees[k]->wo, own = to_tree(r, *r.trees[k], r.wo);
+    const Direction w = carried(options_.map, own, to_tree(r, *r.trees[k], wi), wo);
     if (!(w.z > 0)) continue;
     sum += r.shares[k] / r.trees[k]->albedo() * double(target_(eval(f_, wo, w))) * double(w.z) *
            solid_angle_per_area(options_.map, wo, w);
@@ -116,13 +137,13 @@ std::optional<Direction> PaperSampler::trial(const PaperTree& tree, const PaperN
 
 std::optional<DirectionSample<Spectrum>> PaperSampler::finished(const Reading& r, Direction wo,
                                                                 const PaperTree& tree, Direction wi) const {
-  wi = carried(options_.map, tree.wo, wi, r.wo);
+  wi = from_tree(r, tree, carried(options_.map, tree.wo, wi, to_tree(r, tree, r.wo)));
   if (!(wi.z > 0)) return std::nullopt;
   const Spectrum value = eval(f_, r.wo, wi);
   // At the tree's own wo one value serves for both.
-  const bool own = r.wo == tree.wo && !(r.shares[1] > 0);
+  const bool own = r.wo == tree.wo && r.count == 1;
   const double pdf = own ? double(target_(value)) * double(wi.z) / tree.albedo() : density(r, wi);
-  return DirectionSample<Spectrum>{fixed_wo_ ? wi : turned(wi, wo), float(pdf),
+  return DirectionSample<Spectrum>{fixed_wo_ || options_.phis > 1 ? wi : turned(wi, wo), float(pdf),
                                    scaled_value(value, float(double(wi.z) / pdf))};
 }
 
@@ -130,7 +151,12 @@ std::optional<DirectionSample<Spectrum>> PaperSampler::draw(Direction wo, Unifor
   if (!(wo.z > 0)) return std::nullopt;
   const Reading r = reading(wo);
   auto [x, y] = wide_point(u);
-  const PaperTree& tree = *r.trees[r.shares[1] > 0 && to_unit_double(u()) < r.shares[1] ? 1 : 0];
+  int chosen = 0;
+  if (r.count > 1) {  // from the last on: two trees have always been told apart so
+    double rest = to_unit_double(u());
+    for (chosen = r.count - 1; chosen > 0 && rest >= r.shares[chosen]; --chosen) rest -= r.shares[chosen];
+  }
+  const PaperTree& tree = *r.trees[chosen];
   if (!(tree.albedo() > 0)) return std::nullopt;
   std::size_t leaf = choose_paper_leaf(tree, options_, x, y);
   for (int i = 0; i < options_.max_trials; ++i) {
@@ -148,11 +174,19 @@ std::size_t PaperSampler::sample_n(Direction wo, UniformBits& u,
   if (!(wo.z > 0)) return 0;
   const Reading r = reading(wo);
   const bool restart = options_.retry_from_root;
-  // The second tree's share of N, rounded at random.
-  const auto second = std::size_t(r.shares[1] * double(out.size()) + to_unit_double(u()));
+  // The trees' shares of N: one random offset rounds their sums, so that each has the right mean.
+  const double offset = to_unit_double(u());
+  std::size_t counts[4] = {out.size()};
+  double sum = 0;
+  for (int k = r.count - 1; k > 0; --k) {
+    const std::size_t before = out.size() - counts[0];
+    sum += r.shares[k];
+    const std::size_t upto = std::clamp(std::size_t(sum * double(out.size()) + offset), before, out.size());
+    counts[k] = upto - before, counts[0] = out.size() - upto;
+  }
   std::size_t filled = 0;
-  for (int k = 0; k < 2; ++k) {
-    std::size_t wanted = k == 1 ? std::min(second, out.size()) : out.size() - std::min(second, out.size());
+  for (int k = 0; k < r.count; ++k) {
+    std::size_t wanted = counts[k];
     if (wanted == 0 || !(r.trees[k]->albedo() > 0)) continue;
     const PaperTree& tree = *r.trees[k];
     // Retrying from the root, the rejected are divided again; else a leaf keeps trying for its own.
@@ -179,7 +213,7 @@ std::size_t PaperSampler::sample_n(Direction wo, UniformBits& u,
 float PaperSampler::pdf(Direction wo, Direction wi) const {
   if (!(wo.z > 0 && wi.z > 0)) return 0;
   const Reading r = reading(wo);
-  return float(density(r, fixed_wo_ ? wi : turned(wi, {wo.x, -wo.y, wo.z})));
+  return float(density(r, fixed_wo_ || options_.phis > 1 ? wi : turned(wi, {wo.x, -wo.y, wo.z})));
 }
 
 std::size_t PaperSampler::bytes() const {

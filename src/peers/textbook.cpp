@@ -20,17 +20,19 @@ WeightedLobe cosine(Rgb albedo) { return {mean(albedo), ProposalLobe{}}; }
 // was published has no such function.
 Lobes lobes_of(const Lambert& m, float) { return {cosine(m.rho)}; }
 Lobes lobes_of(const OrenNayar& m, float) { return {cosine(m.rho)}; }
-Lobes lobes_of(const Ggx& m, float) { return {{mean(m.f0), {LobeKind::ggx, m.alpha.x}}}; }
+Lobes lobes_of(const Ggx& m, float) {
+  return {{mean(m.f0), {LobeKind::ggx, m.alpha.x, m.alpha.y, {}, m.phi}}};
+}
 Lobes lobes_of(const Phong& m, float) { return {cosine(m.kd), {mean(m.ks), {LobeKind::power, m.n}}}; }
 Lobes lobes_of(const Ward& m, float) {
-  return {cosine(m.kd), {mean(m.ks), {LobeKind::gaussian, m.alpha_x, m.alpha_y}}};
+  return {cosine(m.kd), {mean(m.ks), {LobeKind::gaussian, m.alpha_x, m.alpha_y, {}, m.phi}}};
 }
 Lobes lobes_of(const CookTorrance& m, float) {
-  return {cosine(m.kd), {mean(m.ks * m.f0), {LobeKind::gaussian, m.alpha.x, m.alpha.y}}};
+  return {cosine(m.kd), {mean(m.ks * m.f0), {LobeKind::gaussian, m.alpha.x, m.alpha.y, {}, m.phi}}};
 }
 // Half and half, section 3 of the paper.
 Lobes lobes_of(const AshikhminShirley& m, float) {
-  return {{0.5f, ProposalLobe{}}, {0.5f, {LobeKind::half_power, m.n_x, m.n_y}}};
+  return {{0.5f, ProposalLobe{}}, {0.5f, {LobeKind::half_power, m.n_x, m.n_y, {}, m.phi}}};
 }
 // A lobe a channel: axes and exponents may differ.
 Lobes lobes_of(const Lafortune& m, float) {
@@ -44,7 +46,8 @@ Lobes lobes_of(const Lafortune& m, float) {
 // By Fresnel reflectance of wo, as rough plastics are shipped.
 Lobes lobes_of(const Plastic& m, float cos_theta_o) {
   const float fresnel = m.f0 + (1 - m.f0) * std::pow(1 - cos_theta_o, 5.f);
-  return {{(1 - fresnel) * mean(m.kd), ProposalLobe{}}, {fresnel, {LobeKind::ggx, m.alpha.x}}};
+  return {{(1 - fresnel) * mean(m.kd), ProposalLobe{}},
+          {fresnel, {LobeKind::ggx, m.alpha.x, m.alpha.y, {}, m.phi}}};
 }
 
 struct Textbook {
@@ -76,6 +79,18 @@ const Textbook* find_textbook(std::string_view model) {
 }
 
 }  // namespace
+
+std::optional<LobeMixture> bounded_mixture(const Material& material) {
+  auto mixture = textbook_mixture(material);
+  if (!mixture) return std::nullopt;
+  bool any = false;
+  for (auto& row : mixture->rows) {
+    for (WeightedLobe& l : row) {
+      if (l.lobe.kind == LobeKind::ggx) l.lobe.kind = LobeKind::ggx_bounded, any = true;
+    }
+  }
+  return any ? mixture : std::nullopt;
+}
 
 std::optional<LobeMixture> textbook_mixture(const Material& material) {
   constexpr std::size_t rows = 64;

@@ -59,7 +59,7 @@ Colour hunt(Colour rgb) {
 }
 double hyab(Colour a, Colour b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 
-// Differences to the power .7, the lower 40 % of what is possible spread to 95 % of the range (sect. 4.1.3).
+// Differences to the power 0.7, the lower 40 % of what is possible spread to 95 % of the range (sect. 4.1.3).
 double compressed(double difference) {
   static const double most = std::pow(hyab(hunt({0, 1, 0}), hunt({0, 0, 1})), .7);
   constexpr double knee = .4, share = .95;
@@ -130,7 +130,7 @@ Plane blurred(const Plane& p, std::initializer_list<Lobe> lobes, double ppd) {
 }
 
 // Lengths of first (edges) and second (points) derivatives of lightness, seen by an eye whose detectors are
-// .082 degrees wide (sect. 4.2.1).
+// 0.082 degrees wide (sect. 4.2.1).
 struct Features {
   Plane edges, points;
 };

@@ -23,7 +23,7 @@ struct Block {
   bool trusted = true;
 };
 
-// One value a pixel: its difference, the variance of that, whether b's error can be trusted.
+// One value per pixel: its difference, the variance of that, whether b's error can be trusted.
 Block pixel(const Image& a, Channels in_a, const Image& b, Channels in_b, int x, int y, double trust) {
   const auto get = [&](const Image& i, int c) { return double(i.values[i.index(x, y) + std::size_t(c)]); };
   Block p;

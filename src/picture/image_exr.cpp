@@ -96,7 +96,7 @@ std::uint32_t size_of(const std::string& type) {
 
 // OpenEXR allocates what a header claims before it reads on; a damaged one claims gigabytes. So the
 // headers are walked here: attributes are as long as they say and end within the file, and pixels or tiles
-// are no more than the best compression can hold, a thousand values a byte and some more for small files.
+// are no more than the best compression can hold, a thousand values per byte and some more for small files.
 void check_claims(ByteView bytes, const std::string& where) {
   const auto lie = [&] {
     return Error("a header that claims more than the file holds", where, "fetch the file again");

@@ -21,6 +21,8 @@ std::uint64_t seed_of(std::uint64_t seed, const std::string& name, std::uint64_t
   return hash ^ (hash >> 31U);
 }
 
+double azimuth_deg(const AnyBrdf& f, const StudyOptions& o) { return f.traits().isotropic ? 0 : o.phi_o_deg; }
+
 void measure_time(const AnySampler<Spectrum>& sampler, Direction wo, const StudyOptions& o, StudyCell& cell) {
   constexpr std::size_t pool = 512;
   UniformBits u{Pcg32(o.seed, 9)};
@@ -54,19 +56,25 @@ SamplerResult measure_sampler(const SamplerInfo& info, const AnySampler<Spectrum
   SamplerResult result;
   result.sampler = info.name;
   result.bytes = sampler.bytes();
+  const double phi_o_deg = azimuth_deg(material.f, o);
   for (std::size_t i = 0; i < o.theta_o_deg.size(); ++i) {
     if (host.cancelled()) throw Cancelled();
-    const Direction wo = direction_from_angles(float(o.theta_o_deg[i] * pi_v<double> / 180), 0.f);
+    const Direction wo = study_wo(material.f, o.theta_o_deg[i], o);
     result.cells.push_back(measure_cell(sampler, {}, wo, known.albedo[i], known.albedo_error[i], lights, o,
                                         seed_of(o.seed, material.name, i),
                                         reference.empty() ? nullptr : &reference[i]));
     measure_time(sampler, wo, o, result.cells.back());
-    result.slices.push_back(density_slice(sampler, o.theta_o_deg[i]));
+    result.slices.push_back(density_slice(sampler, o.theta_o_deg[i], phi_o_deg));
   }
   return result;
 }
 
 }  // namespace
+
+Direction study_wo(const AnyBrdf& f, double theta_o_deg, const StudyOptions& o) {
+  const double degree = pi_v<double> / 180;
+  return direction_from_angles(float(theta_o_deg * degree), float(azimuth_deg(f, o) * degree));
+}
 
 MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInfo* const> samplers,
                        std::span<const Illumination> lights, const StudyOptions& o, const Host& host) {
@@ -81,13 +89,13 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
       const double theta = i < angles ? o.theta_o_deg[i] : curve_theta_o_deg;
       ReferenceOptions reference;
       reference.max_evaluations = o.cubature_evaluations;
-      const auto a =
-          reference_albedo(t, direction_from_angles(float(theta * pi_v<double> / 180), 0.f), reference);
+      const auto a = reference_albedo(t, study_wo(material.f, theta, o), reference);
       result.albedo[i] = a.value, result.albedo_error[i] = a.error;
     }
   });
   for (std::size_t i = 0; i < angles; ++i)
-    result.slices.push_back(target_slice(material.f, {}, o.theta_o_deg[i], result.albedo[i]));
+    result.slices.push_back(
+        target_slice(material.f, {}, o.theta_o_deg[i], result.albedo[i], azimuth_deg(material.f, o)));
   // One build serves our modes; peers may use it too, so its time is counted where it is ours.
   Host alone;
   alone.cancelled = host.cancelled;
@@ -104,7 +112,7 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
     reference.resize(angles);
     host.parallel_for(angles, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Direction wo = direction_from_angles(float(o.theta_o_deg[i] * pi_v<double> / 180), 0.f);
+        const Direction wo = study_wo(material.f, o.theta_o_deg[i], o);
         reference[i] = reference_draws(*exact, wo, lights, o, seed_of(o.seed, material.name, i));
       }
     });
@@ -122,7 +130,7 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
         if (!sampler) continue;
         found[i] = measure_sampler(info, *sampler, material, result, reference, lights, o, host);
         found[i]->build_seconds = seconds;
-        const Direction wo = direction_from_angles(float(curve_theta_o_deg * pi_v<double> / 180), 0.f);
+        const Direction wo = study_wo(material.f, curve_theta_o_deg, o);
         found[i]->curves = measure_curves(*sampler, wo, result.albedo[angles], lights, o,
                                           seed_of(o.seed, material.name, angles));
       } catch (const Error& error) {

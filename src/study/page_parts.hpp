@@ -33,7 +33,7 @@ class HeatCells {
 std::string plain_label(double x, double y, const std::string& text, draw::Anchor anchor, const char* css);
 // A figure across the page, no larger than its letters like.
 std::string whole(const draw::Figure& figure);
-// Every material by every sampler, a row a link to its section.
+// Every material by every sampler; each row links to its section.
 draw::Figure glance_figure(std::span<const MaterialResult> materials, const Verdict& verdict);
 std::string material_section(const MaterialResult& material, std::size_t place, std::size_t of,
                              const Verdict& verdict, std::span<const Illumination> lights,

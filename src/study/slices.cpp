@@ -9,9 +9,9 @@ namespace reflectree::study {
 
 namespace {
 
-Direction in_plane(double angle_deg) {
-  const double a = angle_deg * pi_v<double> / 180;
-  return {float(std::sin(a)), 0.f, float(std::cos(a))};
+Direction in_plane(double angle_deg, double phi_o_deg) {
+  const double a = angle_deg * pi_v<double> / 180, phi = phi_o_deg * pi_v<double> / 180;
+  return {float(std::sin(a) * std::cos(phi)), float(std::sin(a) * std::sin(phi)), float(std::cos(a))};
 }
 
 // Four digits are more than a curve shows, and keep files small.
@@ -38,22 +38,23 @@ std::vector<double> plane_angles(double theta_o_deg) {
   return angles;
 }
 
-std::vector<double> target_slice(const AnyBrdf& f, const Target& target, double theta_o_deg, double albedo) {
-  const Direction wo = direction_from_angles(float(theta_o_deg * pi_v<double> / 180), 0.f);
+std::vector<double> target_slice(const AnyBrdf& f, const Target& target, double theta_o_deg, double albedo,
+                                 double phi_o_deg) {
+  const Direction wo = in_plane(theta_o_deg, phi_o_deg);
   std::vector<double> densities;
   for (const double angle : plane_angles(theta_o_deg)) {
-    const Direction wi = in_plane(angle);
+    const Direction wi = in_plane(angle, phi_o_deg);
     densities.push_back(albedo > 0 ? rounded(double(target(eval(f, wo, wi))) * double(wi.z) / albedo) : 0);
   }
   return densities;
 }
 
-std::vector<double> density_slice(const AnySampler<Spectrum>& sampler, double theta_o_deg) {
+std::vector<double> density_slice(const AnySampler<Spectrum>& sampler, double theta_o_deg, double phi_o_deg) {
   std::vector<double> densities;
   if (!sampler.has_pdf()) return densities;
-  const Direction wo = direction_from_angles(float(theta_o_deg * pi_v<double> / 180), 0.f);
+  const Direction wo = in_plane(theta_o_deg, phi_o_deg);
   for (const double angle : plane_angles(theta_o_deg))
-    densities.push_back(rounded(double(sampler.pdf(wo, in_plane(angle)))));
+    densities.push_back(rounded(double(sampler.pdf(wo, in_plane(angle, phi_o_deg)))));
   return densities;
 }
 

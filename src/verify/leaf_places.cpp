@@ -19,8 +19,8 @@ constexpr int cdf_bins = 64;
 constexpr std::size_t viewers_of_places = 8;  // the draws are shared among so many wo
 // Square coordinates of a direction in float are known to about this.
 constexpr double blur = 1.5e-7;
-// A leaf is resolved where the blur is below this share of it: .6 % of the last of 64 bins changes sides, and
-// as much comes back where the density is the same there.
+// A leaf is resolved where the blur is below this share of it: 0.6 % of the last of 64 bins changes sides,
+// and as much comes back where the density is the same there.
 constexpr double resolved = 1e-4;
 constexpr double largest_theta_o = pi_v<double> / 3;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The models' reference values: one file values/MODEL.py a model. It holds value(p, parameters...), the formula
+"""The models' reference values: one file values/MODEL.py per model. It holds value(p, parameters...), the formula
 as the papers write it, in angles and trigonometric functions where the C++ models use vectors and forms free of
 cancellation; and VALUES, materials with few bits in each number, so that C++ and Python mean the same, under
 each of which stand its values in 40 digits of precision. model_values_test.cpp reads them.

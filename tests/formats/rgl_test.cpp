@@ -13,6 +13,7 @@
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/measured_facts.hpp"
 #include "reflectree/math/fast_functions.hpp"
+#include "runs_of_pairs.hpp"
 #include "synthetic.hpp"
 
 namespace reflectree {
@@ -97,14 +98,7 @@ TEST(Rgl, WarpInvertsALinearDensity) {
 // Blocks, look-ups shared by neighbours of one wo, and pairs below the surface.
 TEST(Rgl, BatchesAreOneByOne) {
   const RglTable table = read_rgl(synthetic::rgl_file(), "test");
-  std::vector<Direction> wo, wi;
-  Pcg32 u(8);
-  for (int i = 0; i < 301; ++i) {
-    const auto any = [&u] {
-      return direction_from_angles(1.8f * to_unit_float(u()), 6 * to_unit_float(u()));
-    };
-    wo.push_back(i % 3 == 1 ? wo.back() : any()), wi.push_back(any());
-  }
+  const auto [wo, wi] = runs_of_pairs();
   std::vector<float> values(3 * wo.size(), -1);
   table.eval(wo, wi, values);
   for (std::size_t i = 0; i < wo.size(); ++i) {
@@ -171,7 +165,7 @@ TEST(Rgl, FactsCountEntriesAndValues) {
   EXPECT_EQ(facts.not_measured, 0U);
   EXPECT_EQ(facts.clipped[0], 0U);
   EXPECT_EQ(facts.clipped[2], 0U);
-  // From theta_o = 1.1 on all of green is negative; below .5 little of it.
+  // From theta_o = 1.1 on all of green is negative; below 0.5 little of it.
   const double share = double(facts.clipped[1]) / double(facts.pairs);
   EXPECT_GT(share, std::cos(1.1));
   EXPECT_LT(share, 0.8);
@@ -235,7 +229,7 @@ TEST(Rgl, DirectionsThatAreNotFiniteDoNoHarm) {
   }
 }
 
-// Values of another renderer: f cos_i, not clipped, 200 pairs a file.
+// Values of another renderer: f cos_i, not clipped, 200 pairs per file.
 struct Reference {
   std::vector<Direction> wo, wi;
   std::vector<Rgb> f_cos;

@@ -12,6 +12,7 @@
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/measured_facts.hpp"
 #include "reflectree/formats/rgl.hpp"
+#include "runs_of_pairs.hpp"
 #include "synthetic.hpp"
 
 namespace reflectree {
@@ -145,14 +146,7 @@ TEST(RglWide, BatchesAreOneByOne) {
     RglWideRecipe recipe = recipe_of(std::max(count, 3), 4);
     if (count == 1) recipe.phi_o = {0}, recipe.wavelengths = {400, 500, 600, 700};
     const AnyBrdf f = table_of(recipe);
-    std::vector<Direction> wo, wi;
-    Pcg32 u(8);
-    for (int i = 0; i < 301; ++i) {
-      const auto any = [&u] {
-        return direction_from_angles(1.8f * to_unit_float(u()), 6 * to_unit_float(u()));
-      };
-      wo.push_back(i % 3 == 1 ? wo.back() : any()), wi.push_back(any());
-    }
+    const auto [wo, wi] = runs_of_pairs();
     const auto channels = std::size_t(f.channels());
     std::vector<float> values(channels * wo.size(), -1);
     f.eval(wo, wi, values);

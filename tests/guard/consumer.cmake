@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Configures, builds and runs tests/consumer against the library.
-#   WAY       find_package (installs BUILD first); any other: add_subdirectory(SOURCE)
+#   WAY       find_package, pkg_config (both install BUILD first); any other: add_subdirectory(SOURCE)
 #   COMPILER  the C++ compiler    FLAGS  its flags    SCRATCH  a folder of ours
-#   GENERATOR CMake's             ROOMS  that BUILD has installed, for find_package
+#   GENERATOR CMake's             ROOMS  that BUILD has installed
 set(folder ${SCRATCH}/${WAY})
 
 function(step)
@@ -21,6 +21,47 @@ else()
   list(APPEND options "-DREFLECTREE_SOURCE=${SOURCE}" -DREFLECTREE_WERROR=ON)
 endif()
 find_program(ccache ccache)
+
+if(WAY STREQUAL "pkg_config")
+  # No CMake on the consumer's side: what pkg-config prints, and the compiler. The folder has been moved, as
+  # packagers move it, and a room that needs less gets less.
+  file(REMOVE_RECURSE ${folder})
+  step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/unpacked)
+  file(RENAME ${folder}/unpacked ${folder}/moved)
+  file(GLOB_RECURSE files ${folder}/moved/*/reflectree-sampler.pc)
+  cmake_path(GET files PARENT_PATH pc_folder)
+  set(ENV{PKG_CONFIG_PATH} "${pc_folder}:$ENV{PKG_CONFIG_PATH}")
+  string(REPLACE "," ";" ROOMS "${ROOMS}")
+  foreach(room IN LISTS ROOMS)
+    step(pkg-config --validate reflectree-${room})
+    execute_process(COMMAND pkg-config --cflags --libs reflectree-${room}
+                    OUTPUT_VARIABLE printed OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    message(STATUS "${room}: ${printed}")
+    if(room STREQUAL "formats" AND printed MATCHES "png|OpenEXR|embree")
+      message(FATAL_ERROR "${room} needs the standard library alone, and asks for: ${printed}")
+    endif()
+    separate_arguments(printed UNIX_COMMAND "${printed}")
+    set(program ${folder}/consumer_${room})
+    set(source ${SOURCE}/tests/consumer/room/${room}.cpp)
+    step(${ccache} ${COMPILER} -std=c++20 -O1 -c ${source} -o ${program}.o ${printed})
+    step(${COMPILER} ${program}.o -o ${program} ${printed})
+    step(${program})
+  endforeach()
+  # The twin: without what it requires, the same program is not linked.
+  file(READ ${pc_folder}/reflectree-sampler.pc facts)
+  string(REGEX REPLACE "Requires:[^\n]*" "Requires:" facts "${facts}")
+  file(WRITE ${pc_folder}/reflectree-sampler.pc "${facts}")
+  execute_process(COMMAND pkg-config --libs reflectree-sampler
+                  OUTPUT_VARIABLE printed OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(printed UNIX_COMMAND "${printed}")
+  execute_process(COMMAND ${COMPILER} ${folder}/consumer_sampler.o -o ${folder}/twin ${printed}
+                  RESULT_VARIABLE result ERROR_QUIET)
+  if(result EQUAL 0)
+    message(FATAL_ERROR "${WAY}: the sampler's program is linked without the rooms that it needs")
+  endif()
+  return()
+endif()
+
 if(ccache)
   list(APPEND options "-DCMAKE_CXX_COMPILER_LAUNCHER=${ccache}")
 endif()

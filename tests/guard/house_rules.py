@@ -3,7 +3,7 @@
 """Rules that every file obeys: an SPDX line, #pragma once in headers, nothing left for later, no
 absolute path of somebody's machine.
 
-Usage: house_rules.py ROOT. Prints one line a broken rule; exit code 1 if there is one.
+Usage: house_rules.py ROOT. Prints one line per broken rule; exit code 1 if there is one.
 """
 import os
 import pathlib

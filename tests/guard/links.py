@@ -6,6 +6,7 @@
 2. Every path that a document names in backticks exists: `src/math/cubature.cpp`, `math/sum.hpp` (which is looked
    for in include/reflectree and src, too), `scenes/{ball,room}.xml`. Names to be filled in are left alone:
    `src/formats/NAME.cpp`. So does every header of ours that its code includes.
+   The same holds for paths in comments of C++ and CMake; there a path may begin anywhere, `square/domain.hpp`.
 3. Every question of docs/questions.md has a path from README in at most three steps. Each page on it really links
    to the next, and the words in backticks behind the last link stand in the file that it leads to.
 
@@ -122,6 +123,21 @@ def dead_paths(root: pathlib.Path, page: pathlib.Path) -> list[str]:
     return found
 
 
+def dead_comments(root: pathlib.Path, source: pathlib.Path, ends: set[str]) -> list[str]:
+    found = []
+    mark = r"//" if source.suffix in (".hpp", ".cpp") else r"#"
+    for number, line in enumerate(read(source).split("\n"), 1):
+        comment = re.search(rf"(?:^|\s){mark}\s(.*)", line)
+        if not comment or "#include" in line:
+            continue
+        for word in re.findall(r"(?<![\w./{}<>*])[\w./-]+\.(?:hpp|cpp|cmake|md|py)\b", comment[1]):
+            stem = word.split("/")[-1].split(".")[0]
+            to_be_filled_in = stem.isupper() or len(stem) == 1  # NAME.hpp, a.cpp
+            if not to_be_filled_in and word not in ends and not is_there(root, source, word):
+                found.append(f"{source.relative_to(root)}:{number}: there is no {word}")
+    return found
+
+
 def leads_to(page: pathlib.Path, place: pathlib.Path, anchor: str) -> bool:
     for _, line in prose(read(page)):
         for target in links(line):
@@ -166,10 +182,15 @@ def lost_questions(root: pathlib.Path) -> list[str]:
 
 def dead_ends(root: pathlib.Path) -> list[str]:
     root = root.resolve()
-    pages = [file for file in files(root) if file.suffix == ".md"]
+    everything = list(files(root))
+    ends = {"/".join(parts[i:]) for parts in (file.relative_to(root).parts for file in everything)
+            for i in range(len(parts))}
     found = []
-    for page in pages:
-        found += dead_links(root, page) + dead_paths(root, page)
+    for file in everything:
+        if file.suffix == ".md":
+            found += dead_links(root, file) + dead_paths(root, file)
+        elif file.suffix in (".hpp", ".cpp", ".cmake") or file.name == "CMakeLists.txt":
+            found += dead_comments(root, file, ends)
     return found + lost_questions(root)
 
 

@@ -141,6 +141,14 @@ class DeadEnds(unittest.TestCase):
         self.plant("docs/other.md", "See `math/gone.hpp`.\n")
         self.assert_caught("there is no math/gone.hpp")
 
+    def test_dead_path_in_a_comment(self):
+        self.plant("src/math/map.cpp", "int the_map;  // the inverse: math/map.cpp, map.cpp, NAME.hpp\n")
+        self.assertEqual(links.dead_ends(self.root), [])
+        self.plant("src/math/map.cpp", "int the_map;  // the inverse: gone/map.cpp\n")
+        self.assert_caught("src/math/map.cpp:1: there is no gone/map.cpp")
+        self.plant("src/math/map.cpp", "int the_map;\n// The inverse is in gone.hpp.\n")
+        self.assert_caught("src/math/map.cpp:2: there is no gone.hpp")
+
     def test_dead_header_in_code(self):
         self.plant("docs/other.md", "As in\n\n    #include \"reflectree/math/gone.hpp\"\n")
         self.assert_caught("docs/other.md:3: there is no include/reflectree/math/gone.hpp")

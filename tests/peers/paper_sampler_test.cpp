@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "allocations.hpp"
 #include "paper_fixture.hpp"
+#include "reflectree/error.hpp"
 #include "reflectree/verify/chi_square.hpp"
 #include "reflectree/verify/consistency.hpp"
 #include "reflectree/verify/faults.hpp"
@@ -89,6 +92,46 @@ TEST(PaperSampler, BetweenItsTablesTheWeightCarriesTheRest) {
     }
   }
   EXPECT_LT(variance[1], 0.5 * variance[0]);
+}
+
+// The same between tabulated azimuths; a twin whose trees stand a step of azimuth aside, and one that bends.
+TEST(PaperSampler, TabulatesAzimuthsOfAnisotropicFunctions) {
+  const AnyBrdf f = brdf("plastic:alpha_x=0.2,alpha_y=0.5,phi_deg=20");
+  const Direction wo = direction_from_angles(0.9f, 2.2f);
+  const Bins bins = equal_mass_bins(target_function(f), wo, {100, 1e-3});
+  ChiSquareOptions chi;
+  chi.samples = 100'000;
+  chi.tests = 2;
+  double variance[2] = {};
+  for (const PaperBetween between : {PaperBetween::nearest, PaperBetween::mixed}) {
+    PaperOptions options = options_of({PaperMap::disk, PaperChoice::cdf, false});
+    options.thetas = 12, options.phis = 12, options.between = between;
+    const PaperSampler sampler(f, {}, options);
+    const Tally drawn = tally(sampler, bins, chi);
+    const CheckResult weights = check_weights(drawn, bins, chi);
+    EXPECT_TRUE(weights.passed) << int(between) << " " << to_line(weights);
+    const CheckResult mean = check_mean_weight(drawn, bins, chi, 3e-3);
+    EXPECT_TRUE(mean.passed) << int(between) << " " << to_line(mean);
+    variance[int(between)] = relative_variance(drawn);
+    ConsistencyOptions consistency;
+    consistency.samples = 2000, consistency.integral_tolerance = 1e-2, consistency.max_none = 1e-2;
+    for (const CheckResult& r : check_consistency(erase(sampler), target_function(f), wo, consistency)) {
+      EXPECT_TRUE(r.passed) << int(between) << " " << to_line(r);
+    }
+
+    std::vector<PaperTree> trees = sampler.trees();
+    std::rotate(trees.begin(), trees.begin() + options.thetas, trees.end());
+    for (std::size_t i = 0; i < trees.size(); ++i) trees[i].wo = sampler.trees()[i].wo;
+    const PaperSampler twin(f, {}, trees, false, options);
+    EXPECT_FALSE(check_mean_weight(tally(twin, bins, chi), bins, chi, 3e-3).passed &&
+                 check_weights(tally(twin, bins, chi), bins, chi).passed);
+    const Tally bent_tally = tally_of(bent(erase(sampler), 1, 0.2), bins, chi);
+    EXPECT_FALSE(check_weights(bent_tally, bins, chi).passed) << int(between);
+  }
+  EXPECT_LT(variance[1], variance[0]);
+  PaperOptions one;
+  one.thetas = 2;
+  EXPECT_THROW(PaperSampler(f, {}, one), Error);
 }
 
 TEST(PaperSampler, IsConsistent) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Five scenes as Mitsuba 3 shows them. A channel's mean may differ by .3 % and by 3.5 standard errors; a
+// Five scenes as Mitsuba 3 shows them. A channel's mean may differ by 0.3 % and by 3.5 standard errors; a
 // planted bias must be seen. docs/results/mitsuba.md has the figures of long renders.
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ TEST(ImageCompare, EqualMeansHaveNormalScoresAndABiasIsSeen) {
   EXPECT_EQ(same.z->blocks, 3U * 64U);
   EXPECT_NEAR(same.z->quantiles[3], 0, .3);
   EXPECT_NEAR(same.z->quantiles[4], .674, .3);
-  EXPECT_GT(biased.z->quantiles[3], 2) << "1 % at an error of 2 % a pixel, 64 pixels a block";
+  EXPECT_GT(biased.z->quantiles[3], 2) << "1 % at an error of 2 % per pixel, 64 pixels per block";
   EXPECT_NEAR(same.channels[0].mse, 8e-4, 1e-4);
   EXPECT_NEAR(same.channels[0].relative_mse, 8e-4 / 1.01, 1e-4);
   EXPECT_THROW(compare_images(noise(1, 0), make_image(2, 2, {"R", "G", "B"})), Error);

@@ -111,7 +111,7 @@ struct Chance {
     if (!(wo.z > 0)) return std::nullopt;
     const float z = to_unit_float(u()), phi = 2 * pi * to_unit_float(u()), r = std::sqrt(1 - z * z);
     Spectrum weight(3);
-    for (int k = 0; k < 3; ++k) weight[k] = z;  // uniform: f cos / pdf = .5 / pi cos 2 pi
+    for (int k = 0; k < 3; ++k) weight[k] = z;  // uniform: f cos / pdf = 0.5 / pi cos 2 pi
     return DirectionSample<Spectrum>{{r * std::cos(phi), r * std::sin(phi), z}, 0, weight, sample_reflection};
   }
 };

@@ -176,7 +176,7 @@ TEST(Needle, MissedByTheBuilderLeavesOneShotUnbiased) {
 }
 
 // Leaves of one-shot trees step over a sharp lobe between the azimuths of their grids: without probes its
-// variance was .07 at 50 and .12 at 55 degrees.
+// variance was 0.07 at 50 and 0.12 at 55 degrees.
 TEST(Needle, BetweenTheAzimuthsOfTheGridsOfOneShot) {
   const auto s = make_sampler(material("phong:kd=0,ks=0.9,n=5000"));
   for (const double theta : {45, 50, 55}) {

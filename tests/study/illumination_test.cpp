@@ -45,7 +45,7 @@ TEST(Illumination, TheSmallLightReachesNoFurtherThanItself) {
   EXPECT_NEAR(e.mean_square, share, 2e-3 * share);
   EXPECT_GT(e.correlation_at(std::cos(1.5 * r)), 0);
   EXPECT_EQ(e.correlation_at(std::cos(2.2 * r)), 0);
-  // Overlap of two flat disks at distance r: (2 acos(1/2) - sqrt(3)/2) / pi = .391.
+  // Overlap of two flat disks at distance r: (2 acos(1/2) - sqrt(3)/2) / pi = 0.391.
   EXPECT_NEAR(e.correlation_at(std::cos(r)) / share, 0.391, 0.01);
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 const Direction wo = direction_from_angles(0.7f, 0.f);
 
-// Lambert of albedo .5 in three channels; the target is the norm.
+// Lambert of albedo 0.5 in three channels; the target is the norm.
 const double grey = 0.5 * std::sqrt(3.);
 
 StudyCell cell_of(const AnySampler<Spectrum>& sampler, double albedo, std::uint32_t samples = 1U << 17U) {

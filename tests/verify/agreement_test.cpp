@@ -82,7 +82,7 @@ TEST(AgreementTwin, FivePerCentBetween41And46Degrees) {
   EXPECT_TRUE(fails(judge(s), "pdf_agrees"));
 }
 
-// The density of a slab that begins at .999 of the cosine: wrong beside the borders alone.
+// The density of a slab that begins at 0.999 of the cosine: wrong beside the borders alone.
 TEST(AgreementTwin, TheDensityOfTheSlabBeside) {
   Suspect s = built().suspect();
   const PackedSampler& packed = *s.packed;

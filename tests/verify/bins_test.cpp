@@ -11,8 +11,8 @@
 namespace reflectree {
 namespace {
 
-// Ross-Thick, Li-Sparse reciprocal with the weights (.1, .05, .03); Lucht et al. 2000. Clamped at 0: a kink
-// along a curve, and growth as 1 / cos_i towards the rim.
+// Ross-Thick, Li-Sparse reciprocal with the weights (0.1, 0.05, 0.03); Lucht et al. 2000. Clamped at 0: a
+// kink along a curve, and growth as 1 / cos_i towards the rim.
 float ross_li(Direction o, Direction i) {
   const float so = std::sqrt(std::max(0.f, 1 - o.z * o.z)), si = std::sqrt(std::max(0.f, 1 - i.z * i.z));
   const float cos_phi = so > 0 && si > 0 ? std::clamp((o.x * i.x + o.y * i.y) / (so * si), -1.f, 1.f) : 1.f;
@@ -63,7 +63,7 @@ TEST(Bins, StateTheirErrorForKinksAndRims) {
   for (const double theta : {10., 88.}) expect_right(rim, theta, 1e-4);
 }
 
-// Of Ross-Li at 88 degrees two cells by two in every bin lost .2 % and stated 3e-4.
+// Of Ross-Li at 88 degrees two cells by two in every bin lost 0.2 % and stated 3e-4.
 TEST(Bins, OfRossLiAtGrazingAreRight) {
   const Bins bins = equal_mass_bins(target_function(ross_li), direction_at(88));
   EXPECT_NEAR(bins.total, 0.336175, 3e-4 * 0.336175);

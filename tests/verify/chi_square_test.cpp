@@ -195,7 +195,7 @@ TEST(ChiSquare, PValuesAreUniform) {
   }
 }
 
-// Eight tests with a p of .01 each tell together what none tells alone; uniform ones tell nothing.
+// Eight tests with a p of 0.01 each tell together what none tells alone; uniform ones tell nothing.
 TEST(ChiSquare, WeakTestsTellTogether) {
   const std::vector<double> weak(8, 0.01), uniform{0.9, 0.3, 0.5, 0.1, 0.7, 0.02, 0.99, 0.6};
   EXPECT_NEAR(check_together("together", weak).statistic, 2.3263 * std::sqrt(8.), 1e-3);

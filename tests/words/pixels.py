@@ -37,7 +37,7 @@ def png(rows, bits=8, palette=None, transparent=None, gamma=None):
 
 
 def hdr(rows, header=(), form="32-bit_rle_rgbe"):
-    """`rows`: of four bytes a pixel."""
+    """`rows`: of four bytes per pixel."""
     lines = ["#?RADIANCE", *header, f"FORMAT={form}", "", f"-Y {len(rows)} +X {len(rows[0])}", ""]
     return "\n".join(lines).encode() + bytes(v for row in rows for pixel in row for v in pixel)
 

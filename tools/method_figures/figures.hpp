@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of docs/method.md, one function a step of the method.
+// The figures of docs/method.md, one function per step of the method.
 #pragma once
 
 #include "reflectree/brdf/any_brdf.hpp"

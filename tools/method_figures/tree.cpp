@@ -31,7 +31,7 @@ Figure tree_growth_figure(const Example& example) {
     const double x = place.x + radius, y = place.y + place.height() + 40 + radius;
     Figure figure{width, y + radius + 12, "", {}, {}};
     figure.body = label(place.x, 24, std::to_string(tree.leaves.size()) + " leaves", Anchor::start, "head") +
-                  label(place.x, 42, number(volume, 2) + " trials a direction", Anchor::start, "note");
+                  label(place.x, 42, number(volume, 2) + " trials per direction", Anchor::start, "note");
     figure.body += square_raster(bound, range, place);
     for (const CoarseLeaf& leaf : tree.leaves) {
       figure.body +=

@@ -10,7 +10,7 @@
 namespace reflectree::study {
 
 struct StudyOptions {
-  std::uint64_t samples = 1'000'000;  // a chi-square test
+  std::uint64_t samples = 1'000'000;  // per chi-square test
   std::vector<double> angles_deg{0, 15, 30, 45, 60, 75, 85, 89};
   int random_angles = 8;
   int albedo_directions = 200;

@@ -2,23 +2,13 @@
 #include "promises.hpp"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <functional>
+
+#include "reflectree/text/printf_text.hpp"
 
 namespace reflectree::study {
 
 namespace {
-
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* pattern, ...) {
-  char buffer[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 double median(std::vector<double> v) {
   if (v.empty()) return 0;
@@ -40,7 +30,7 @@ struct Judge {
     return v;
   }
   void at_most(const std::string& text, double value, double limit, const char* unit = "") {
-    promises.push_back({text, format("%.4g%s", value, unit), value <= limit});
+    promises.push_back({text, detail::text("%.4g%s", value, unit), value <= limit});
   }
   // Every verdict of that name passed; names the materials where not.
   void every(const std::string& text, const std::string& check) {
@@ -57,8 +47,8 @@ struct Judge {
       if (here > 0) where += (where.empty() ? ": " : ", ") + m.material;
       failed += here;
     }
-    std::string measured = format("%d tests, %d failed%s", count, failed, where.c_str());
-    if (least < 1) measured += format(", least p = %.2g", least);
+    std::string measured = detail::text("%d tests, %d failed%s", count, failed, where.c_str());
+    if (least < 1) measured += detail::text(", least p = %.2g", least);
     promises.push_back({text, measured, count > 0 && failed == 0});
   }
 };
@@ -79,8 +69,8 @@ std::vector<Promise> judge(const std::vector<Measurement>& all, const StudyOptio
   j.at_most("no sample is refused (share)", largest(j.collect([](auto& m) { return m.none; })), 0);
   j.at_most("mean trials <= 1.25 for every wo", largest(j.collect([](auto& m) { return m.worst_trials; })),
             1.25);
-  j.at_most(format("overshoot mass <= 1e-6 (upper 95 %% bound, %.0e trials per material)",
-                   double(options.overshoot_trials)),
+  j.at_most(detail::text("overshoot mass <= 1e-6 (upper 95 %% bound, %.0e trials per material)",
+                         double(options.overshoot_trials)),
             largest(j.collect([](auto& m) { return m.overshoot_upper; })), 1e-6);
   std::vector<double> variance, grazing;
   for (const Measurement& m : all) {
@@ -107,7 +97,7 @@ std::vector<Promise> judge(const std::vector<Measurement>& all, const StudyOptio
 std::string to_markdown(const std::vector<Measurement>& all, const std::vector<Promise>& promises,
                         const StudyOptions& options, const std::string& command) {
   std::string out = "# The main job, measured\n\nPrinted by `" + command + "`.\n\n";
-  out += format(
+  out += detail::text(
       "%zu materials; %.0e samples per chi-square test at %zu fixed and %d random elevations per "
       "material; %d tests in the family, whose significance is %.0e.\n\n",
       all.size(), double(options.samples), options.angles_deg.size(), options.random_angles, options.tests,
@@ -130,7 +120,7 @@ std::string to_markdown(const std::vector<Measurement>& all, const std::vector<P
     double p = 1;
     int failed = 0;
     for (const Verdict& v : m.verdicts) p = std::min(p, v.p_value), failed += !v.passed;
-    out += format(
+    out += detail::text(
         "| %s | %s | %llu + %llu | %llu + %llu | %.0f | %.2f | %.2g | %d | %.3f, %.3f | %.1e | "
         "%.4f | %.4f | %.4f | %.4f | %.0f |\n",
         m.material.c_str(), m.domain.c_str(), static_cast<unsigned long long>(m.exact_slabs),

@@ -53,7 +53,7 @@ std::vector<const PictureCell*> Results::of(std::string_view scene, std::string_
   return found;
 }
 
-// Fields between tabulators: the key, then a cell a line.
+// Fields between tabulators: the key, then a cell per line.
 void keep(const std::string& path, const Results& results) {
   std::string text = results.key + "\n";
   for (const PictureCell& c : results.cells) {

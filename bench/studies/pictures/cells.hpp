@@ -9,7 +9,7 @@
 
 namespace reflectree::pictures {
 
-// relMSE, the mean over pixels and channels of (a - b)^2 / (b^2 + .01), less the converged picture's own
+// relMSE, the mean over pixels and channels of (a - b)^2 / (b^2 + 0.01), less the converged picture's own
 // noise. `trimmed`: without the one pixel in a thousand where it is largest, which a few bright paths fill.
 struct RelativeError {
   double all = 0, trimmed = 0;

@@ -32,7 +32,7 @@ RelativeError means_of(std::vector<double> errors) {
   return e;
 }
 
-// square(pixel, channel) / (b^2 + .01), a mean over the channels for each pixel that counts.
+// square(pixel, channel) / (b^2 + 0.01), a mean over the channels for each pixel that counts.
 template <class Square>
 std::vector<double> per_pixel(const Image& b, const std::vector<char>& mask, const Square& square) {
   std::vector<double> errors;

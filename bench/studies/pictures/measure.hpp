@@ -32,7 +32,7 @@ struct Method {
 // The scene as the method wants it.
 render::Scene prepared(const render::Scene& scene, const Method& method);
 
-// CPU seconds of a sample a pixel, the lesser of two short renders. Throws Cancelled.
+// CPU seconds of a sample per pixel, the lesser of two short renders. Throws Cancelled.
 double seconds_per_sample(const render::Scene& scene, const Method& method, const Host& host);
 
 // One film that stops at the lesser of both numbers of samples, is looked at, and goes on to the other.

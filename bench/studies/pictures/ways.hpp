@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ways of reducing variance that exact sampling is combined with, in direct light alone, which admits all
-// of them. Each follows as many of the material's own directions a pixel.
+// of them. Each follows as many of the material's own directions per pixel.
 #pragma once
 
 #include <span>

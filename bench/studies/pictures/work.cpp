@@ -24,7 +24,7 @@ constexpr const char* combined_samplers[] = {"exact", "one-shot", "one-shot-mono
 std::uint64_t seed_of(const Plan& plan, int round) { return plan.seed * 1000 + 1 + std::uint64_t(round); }
 std::uint64_t reference_seed(const Plan& plan) { return plan.seed * 1000; }
 
-// As many directions a pixel at the first surface, whatever the method.
+// As many directions per pixel at the first surface, whatever the method.
 Method method_of(const std::string& name, const Plan& plan) {
   Method m;
   m.samples = plan.samples;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CSV tables of model parameters: a header `material,NAME,NAME,...`, then one material a line.
+// CSV tables of model parameters: a header `material,NAME,NAME,...`, then one material per line.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct ParameterTable {
   std::vector<std::string> columns;  // without the first, `material`
   struct Row {
     std::string material;
-    std::vector<double> values;  // one a column, finite
+    std::vector<double> values;  // one per column, finite
   };
   std::vector<Row> rows;
 

@@ -5,16 +5,21 @@
 //   chunk = tag[4] version:u16 flags:u16 length:u64 payload[length]
 //
 //   MATL  text of the material
-//   TARG  kind:u8 index:u16                         DOMN  kind:u8 half:u8 exponent:f32
+//   TARG  kind:u8 index:u16                         DOMN  kind:u8 symmetry:u8 exponent:f32
 //   EXPA  ONPA  the partitions: coordinates (name lo hi)..., axis:u8..., split:f32...
 //   EXTR  exact trees: status:u8 volume:f32 tree    ONTR  one-shot trees: tree
 //         tree = nodes (2 bits each) mass:u32... slope_x:i8... slope_y:i8...
 //   ALBD  relative_error:f32 cos_theta_o:f32... albedo:f32...
+//   PROB  64 probes of the BRDF's target: f32...
+//   REPT* trials:f32 overshoot:f32 variance:f32 asymmetry:f32 evaluations:u64, what the builder measured
+// Where there is something to say:
 //   ANIS  of anisotropic functions: symmetry:u8 axis:f32 stretch:f32 phi_o:f32... (albedos row by row)
-//   PROB  64 probes of the BRDF's target            REPT  what the builder measured (optional)
+//   SCAL  target.scale:f32, unless it is 1
+//   PRCH* every channel at the 64 probes: f32..., of functions without a name
+//   NOTE* sentences about what was promised and is not kept
 //
-// Flag bit 0 marks a chunk that a reader who does not know its tag or version may skip. Lists carry their
-// length as u32. The BRDF itself is not inside: load it by the material's text and check_identity().
+// *: flag bit 0 marks a chunk that a reader who does not know its tag or version may skip. Lists and texts
+// carry their length as u32. The BRDF itself is not inside: load it by the material's text and check_identity().
 #pragma once
 
 #include "reflectree/formats/bytes.hpp"

@@ -104,8 +104,8 @@ inline float polar_angle(float sin2_theta, float cos_theta) {
   return first_quadrant_angle(sqrt(sin2_theta), max(cos_theta, 0.f));
 }
 
-// Powers of two are taken off in two parts (Cody & Waite 1980), the
-// rest, |r| <= log(2)/2, enters the polynomial of Moshier's Cephes, expf.
+// Powers of two are taken off in two parts (Cody & Waite 1980); the rest, |r| <= log(2)/2, enters the
+// polynomial of Moshier's Cephes, expf.
 inline float exp_of_negative(float x) {
   if (!(x > -87)) return std::exp(x);  // below the normal numbers
   const int n = int(1.44269504f * x - .5f);

@@ -13,7 +13,7 @@
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/peers/density.hpp"
-#include "reflectree/peers/square_chart.hpp"
+#include "reflectree/peers/sliced_density.hpp"
 
 namespace reflectree {
 
@@ -39,7 +39,7 @@ class CellCdf {
 
 class FactoredDensity {
  public:
-  // theta_o ascends; weight[angle * terms + l] = F_l, sums to 1 at each angle.
+  // theta_o ascends; weight: [azimuth][theta_o][l], F_l, sums to 1 at each wo.
   FactoredDensity(SquareChart chart, std::vector<float> theta_o, std::vector<float> weight,
                   std::vector<CellCdf> u, std::vector<CellCdf> v);
 
@@ -48,15 +48,21 @@ class FactoredDensity {
   std::size_t bytes() const;
 
  private:
-  float weight(std::size_t angle, float t, std::size_t term) const;
-  float pdf_square(std::size_t angle, float t, Vec2<float> p) const;
+  struct WeightsAt {
+    AnglePosition theta;
+    AzimuthPosition phi;
+  };
+  WeightsAt weights_at(Direction wo) const;
+  float weight(const WeightsAt& at, std::size_t term) const;
+  float pdf_square(const WeightsAt& at, Vec2<float> p) const;
 
   SquareChart chart_;
   std::vector<float> theta_o_, weight_;
   std::vector<CellCdf> u_, v_;
 };
 
+// `azimuths` of wo all around; 1 for isotropic functions.
 FactoredDensity fit_factored(const AnyBrdf& f, Target target, SquareChart chart, std::vector<float> theta_o,
-                             const FactoredOptions& options = {});
+                             const FactoredOptions& options = {}, std::size_t azimuths = 1);
 
 }  // namespace reflectree

@@ -5,27 +5,35 @@
 
 #include <vector>
 
+#include "reflectree/brdf/models/widths.hpp"
 #include "reflectree/peers/density.hpp"
 
 namespace reflectree {
 
 enum class LobeKind : std::uint8_t {
-  uniform,     // 1 / (2 pi)
-  cosine,      // cos_i / pi; the same as uniform over the projected disk
-  power,       // (n + 1) / (2 pi) cos^n about normalize(axis * wo), by components; n = a
-  ggx,         // visible normals of GGX, alpha = a; spherical caps, Dupuy and Benyoub 2023
-  gaussian,    // half vectors with Gaussian slopes of widths a, b; Walter 2005 for Ward's lobe, and with
-               // a = b Beckmann's D cos_theta_h
-  half_power,  // half vectors of Ashikhmin and Shirley 2000, exponents a, b
+  uniform,      // 1 / (2 pi)
+  cosine,       // cos_i / pi; the same as uniform over the projected disk
+  power,        // (n + 1) / (2 pi) cos^n about normalize(axis * wo), by components; n = a
+  ggx,          // visible normals of GGX, widths a, b; spherical caps, Dupuy and Benyoub 2023
+  ggx_bounded,  // the same without most normals whose reflection is lost; Tokuyoshi and Eto 2024
+  gaussian,     // half vectors with Gaussian slopes of widths a, b; Walter 2005 for Ward's lobe, and with
+                // a = b Beckmann's D cos_theta_h
+  half_power,   // half vectors of Ashikhmin and Shirley 2000, exponents a, b
 };
 
 struct ProposalLobe {
   LobeKind kind = LobeKind::cosine;
   float a = 1, b = 1;
   Vec3<float> axis{-1, -1, 1};
+  Azimuth phi = {};  // of the lobe's own x axis
 
   std::optional<Direction> sample(Direction wo, UniformBits& u) const;
   float pdf(Direction wo, Direction wi) const;
+
+ private:
+  bool is_ggx() const { return kind == LobeKind::ggx || kind == LobeKind::ggx_bounded; }
+  std::optional<Direction> sample_own(Direction wo, UniformBits& u) const;  // in its own frame
+  float pdf_own(Direction wo, Direction wi) const;
 };
 
 struct WeightedLobe {

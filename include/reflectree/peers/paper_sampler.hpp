@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Montes et al. 2008: a leaf of the tree, then rejection in it. The paper says: density q = f / I_0 for the
 // wo of a tree; for isotropic functions, trees at discrete theta_o, with the incident plane at phi_o = 0. How
-// many, and what serves a wo between two of them, is read into it, in its favour: directions are drawn from
+// many, and what serves a wo between two of them, is read into it, in its favour; so are trees at tabulated
+// phi_o, which it leaves to future work, for functions that depend on the azimuth of wo. Directions are drawn from
 // the tables' own functions and weighted by their density, f(tabulated wo, wi) / I_0, and the weight
 // f_cos / pdf carries the rest. So nothing is biased by the tables' distance, wherever one of them has the
 // support of f; the variance grows with it. Ninety trees, at the middle of each degree: MERL's own step.
@@ -25,11 +26,11 @@ class PaperSampler {
  public:
   using Value = Spectrum;
 
-  // Isotropic functions only; throws Error.
+  // Throws Error for an anisotropic function and a single phi.
   PaperSampler(AnyBrdf f, Target target, const PaperOptions& options = {}, const Host& host = {});
   // For this wo, any function; asked about another wo it draws from the same tree.
   PaperSampler(AnyBrdf f, Target target, Direction wo, const PaperOptions& options = {});
-  // From trees made elsewhere, in order of theta_o.
+  // From trees made elsewhere: [phi_o][theta_o], options.phis of the former.
   PaperSampler(AnyBrdf f, Target target, std::vector<PaperTree> trees, bool fixed_wo,
                const PaperOptions& options);
 
@@ -52,17 +53,22 @@ class PaperSampler {
   const std::vector<PaperTree>& trees() const { return *trees_; }
 
  private:
-  // What serves one wo: one tree, or two with their shares. wo is turned to phi_o = 0 unless it is fixed.
+  // What serves one wo: up to four trees with their shares. Directions are carried from the azimuth of wo to that
+  // of the tree. wo: as f is asked; of isotropic functions turned to phi_o = 0.
   struct Reading {
     Direction wo;
-    const PaperTree* trees[2] = {nullptr, nullptr};
-    double shares[2] = {1, 0};
+    int count = 1;
+    const PaperTree* trees[4] = {};
+    double shares[4] = {1};
   };
   Reading reading(Direction wo) const;
   std::optional<DirectionSample<Value>> draw(Direction wo, UniformBits& u) const;
   // One trial in the leaf, at (u, v) of its rectangle: wi for the tree's wo; nullopt: rejected.
   std::optional<Direction> trial(const PaperTree& tree, const PaperNode& leaf, double u, double v,
                                  double height) const;
+  // wi about r.wo, carried to the azimuth of the tree and back.
+  Direction to_tree(const Reading& r, const PaperTree& tree, Direction wi) const;
+  Direction from_tree(const Reading& r, const PaperTree& tree, Direction wi) const;
   // The sample for the true wo, from a direction that `tree` accepted; nullopt: below its horizon.
   std::optional<DirectionSample<Value>> finished(const Reading& r, Direction wo, const PaperTree& tree,
                                                  Direction wi) const;

@@ -21,8 +21,8 @@ namespace reflectree {
 // then by rows, with a number each, so that a stratified point stays one (Clarberg et al. 2005). alias: at
 // once (Walker 1977).
 enum class PaperChoice : std::uint8_t { cdf, warp, alias };
-// Which tree serves a wo between the tabulated elevations. nearest: one. mixed: either neighbour, by its
-// share, and the density is their mixture.
+// Which tree serves a wo between the tabulated ones. nearest: one. mixed: each neighbour, by its share, and
+// the density is their mixture.
 enum class PaperBetween : std::uint8_t { nearest, mixed };
 
 struct PaperOptions {
@@ -31,6 +31,7 @@ struct PaperOptions {
   int grid = 8;        // points per side of a node's estimates of I and M
   std::size_t max_leaves = 200'000;
   int thetas = 90;  // elevations with a tree of their own
+  int phis = 1;     // and azimuths all around; isotropic functions need one
   PaperBetween between = PaperBetween::mixed;
   int max_trials = 4096;  // of one direction; then it is lost
   // Ablations, none in the paper.
@@ -39,7 +40,7 @@ struct PaperOptions {
   bool retry_from_root = false;  // leaves by volume; exact whatever the errors of I
   // A node whose volume is a smaller share than this of the whole integral is not split: it can add no more
   // to the mean of the trials. Elsewhere than on the paper's disk T falls to 0 along a line that no square
-  // follows, and slivers would be split without end; .001 ends that.
+  // follows, and slivers would be split without end; 0.001 ends that.
   double negligible = 0;
   friend bool operator==(const PaperOptions&, const PaperOptions&) = default;
 };

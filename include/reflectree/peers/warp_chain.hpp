@@ -3,7 +3,7 @@
 // Acquisition and Rendering": uniform points become points of the table of the target, those become visible
 // normals, and a normal reflects wo. Fitted from any BRDF: the normals' distribution by power iteration on
 // its retro-reflection. As published it loses samples below the horizon, and all mass at normals without
-// retro-reflection: none of GGX's or of the RGL files' was found lost, but .3 of a pure Phong lobe's at
+// retro-reflection: none of GGX's or of the RGL files' was found lost, but 0.3 of a pure Phong lobe's at
 // grazing wo, which does not return to wo from beyond 45 degrees.
 #pragma once
 
@@ -25,7 +25,16 @@ struct WarpOptions {
 // D over x = sqrt(2 theta_h / pi), `count` equal steps from 0 to 1; the projected area of the normal is 1.
 std::vector<float> retro_normals(const AnyBrdf& f, Target target, int count);
 
-// One slice of theta_o, over the half_vector chart.
+// D of an anisotropic function: [azimuth][x], `count` steps of x as above, equal azimuths all around.
+struct RetroNormals {
+  int count = 0, azimuths = 1;
+  std::vector<float> d;
+  // At x in [0, 1], phi in radians; linear between nodes.
+  float at(float x, float phi) const;
+};
+RetroNormals retro_normals_around(const AnyBrdf& f, Target target, int count, int azimuths);
+
+// One slice of wo, over the half_vector chart.
 struct WarpSlice {
   BilinearTable normals, target;
 
@@ -45,7 +54,9 @@ struct WarpSlice {
   std::size_t bytes() const { return normals.bytes() + target.bytes(); }
 };
 
+// [azimuth][theta_o]; `azimuths` of wo all around, 1 for isotropic functions.
 std::vector<WarpSlice> fit_warp_chain(const AnyBrdf& f, Target target, const std::vector<float>& theta_o,
-                                      const WarpOptions& options = {}, const Host& host = {});
+                                      const WarpOptions& options = {}, const Host& host = {},
+                                      std::size_t azimuths = 1);
 
 }  // namespace reflectree

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What f returns for a block of trials: in lanes where its formula is a template on the scalar; by one erased
-// call a block for AnyBrdf; else one by one.
+// call per block for AnyBrdf; else one by one.
 #pragma once
 
 #include "reflectree/brdf/any_brdf.hpp"

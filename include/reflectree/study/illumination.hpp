@@ -38,7 +38,7 @@ struct Illumination {
 Illumination make_illumination(std::string name, LatLong map);
 
 // A disk of 5 degrees in the dark; a clouded sky over grey ground, blurred at the horizon; the same sky with
-// a sun of .27 degrees that gives four fifths of the light.
+// a sun of 0.27 degrees that gives four fifths of the light.
 std::vector<Illumination> procedural_illuminations();
 
 }  // namespace reflectree::study

@@ -13,6 +13,7 @@ namespace reflectree::study {
 
 struct StudyOptions {
   std::vector<double> theta_o_deg{10, 45, 75, 85};
+  double phi_o_deg = 37;  // azimuth of wo where the function depends on it: on no axis, at no node of a table
   std::uint32_t samples = 1U << 16U;  // a cell; a multiple of 16
   std::uint32_t mean_of = 1024;       // samples in the mean whose RMSE counts: there bias tells
   int curve_repeats = 32;             // runs behind each point of an error curve
@@ -70,6 +71,9 @@ struct StudyMaterial {
   Material material;
   AnyBrdf f;
 };
+
+// The known direction at an elevation; at azimuth 0 where the function is isotropic.
+Direction study_wo(const AnyBrdf& f, double theta_o_deg, const StudyOptions& options);
 
 // Cubature and cells at once on the host's threads. Throws Cancelled.
 MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInfo* const> samplers,

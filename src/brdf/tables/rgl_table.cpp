@@ -84,47 +84,31 @@ Rgb RglTable::unclipped(const ShadingGeometry<float>& g) const {
 
 void RglTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
                     std::span<float> out) const {
-  std::vector<ShadingGeometry<float>> geometry;
-  for (std::size_t i = 0; i < wo.size(); ++i) geometry.push_back(shading_geometry(wo[i], wi[i]));
-  eval(geometry, out);
+  eval(shading_geometries(wo, wi), out);
 }
 
 void RglTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const {
-  constexpr std::size_t block = 64;
-  struct Pair {
-    std::size_t i;
-    Known of_wo;
-    InWarp warp;
-    InColour colour;
-  } pairs[block];
-  const auto both_ends = [](const auto* node, std::size_t nodes) {
-    prefetch(node), prefetch(reinterpret_cast<const char*>(node + nodes) - 1);
+  const auto both_ends = [](const auto* node) {
+    prefetch(node), prefetch(reinterpret_cast<const char*>(node + 2) - 1);
   };
   const auto warp_stride = std::size_t(warp_width_), colour_stride = std::size_t(colour_width_);
-  for (std::size_t begin = 0; begin < geometry.size(); begin += block) {
-    const std::size_t end = std::min(begin + block, geometry.size());
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const ShadingGeometry<float>& g = geometry[i];
-      if (!(g.cos_theta_o > 0 && g.cos_theta_i > 0)) {
-        out[3 * i] = out[3 * i + 1] = out[3 * i + 2] = 0;
-        continue;
-      }
-      Pair& p = pairs[count];
-      const bool same = count > 0 && geometry[pairs[count - 1].i].wo == g.wo;
-      p.i = i, p.of_wo = same ? pairs[count - 1].of_wo : known(g), p.warp = in_warp(p.of_wo, g);
-      both_ends(p.warp.node, 2), both_ends(p.warp.node + warp_stride, 2), both_ends(p.warp.rows, 2);
-      ++count;
-    }
-    for (Pair& p : std::span(pairs, count)) {
-      p.colour = in_colour(p.of_wo, p.warp);
-      both_ends(p.colour.node, 2), both_ends(p.colour.node + colour_stride, 2);
-    }
-    for (const Pair& p : std::span(pairs, count)) {
-      const Rgb v = clipped(unclipped(p.of_wo, p.warp.u, p.colour, geometry[p.i].cos_theta_i));
-      out[3 * p.i] = v.r, out[3 * p.i + 1] = v.g, out[3 * p.i + 2] = v.b;
-    }
-  }
+  look_up<64>(
+      geometry, [&](std::size_t i) { out[3 * i] = out[3 * i + 1] = out[3 * i + 2] = 0; },
+      [&](const ShadingGeometry<float>& g) { return known(g); },
+      [&](const Known& of_wo, const ShadingGeometry<float>& g) {
+        const InWarp at = in_warp(of_wo, g);
+        both_ends(at.node), both_ends(at.node + warp_stride), both_ends(at.rows);
+        return at;
+      },
+      [&](const Known& of_wo, const InWarp& warp) {
+        const InColour at = in_colour(of_wo, warp);
+        both_ends(at.node), both_ends(at.node + colour_stride);
+        return at;
+      },
+      [&](std::size_t i, const Known& of_wo, const InWarp& warp, const InColour& colour) {
+        const Rgb v = clipped(unclipped(of_wo, warp.u, colour, geometry[i].cos_theta_i));
+        out[3 * i] = v.r, out[3 * i + 1] = v.g, out[3 * i + 2] = v.b;
+      });
 }
 
 RglTable::InWarp RglTable::in_warp(const Known& of_wo, const ShadingGeometry<float>& g) const {

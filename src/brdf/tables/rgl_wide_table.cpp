@@ -166,52 +166,36 @@ Spectrum RglWideTable::operator()(const ShadingGeometry<float>& g) const {
 
 void RglWideTable::eval(std::span<const Direction> wo, std::span<const Direction> wi,
                         std::span<float> out) const {
-  std::vector<ShadingGeometry<float>> geometry;
-  for (std::size_t i = 0; i < wo.size(); ++i) geometry.push_back(shading_geometry(wo[i], wi[i]));
-  eval(geometry, out);
+  eval(shading_geometries(wo, wi), out);
 }
 
 void RglWideTable::eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const {
-  constexpr std::size_t block = 32;
-  struct Pair {
-    std::size_t i;
-    Known of_wo;
-    InWarp warp;
-    InColour colour;
-  } pairs[block];
   const auto channels = std::size_t(channels_);
   const auto two_rows = [](const auto* node, std::size_t row) { prefetch(node), prefetch(node + row); };
-  for (std::size_t begin = 0; begin < geometry.size(); begin += block) {
-    const std::size_t end = std::min(begin + block, geometry.size());
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const ShadingGeometry<float>& g = geometry[i];
-      if (!(g.cos_theta_o > 0 && g.cos_theta_i > 0)) {
-        std::fill_n(out.data() + i * channels, channels, 0.f);
-        continue;
-      }
-      Pair& p = pairs[count];
-      const bool same = count > 0 && geometry[pairs[count - 1].i].wo == g.wo;
-      p.i = i, p.of_wo = same ? pairs[count - 1].of_wo : known(g), p.warp = in_warp(p.of_wo, g);
-      for (std::size_t s = 0; s < slices_; ++s) {
-        two_rows(warp_.data() + p.of_wo.slice[s] * warp_size_ + p.warp.node, std::size_t(warp_width_));
-        prefetch(row_.data() + p.of_wo.slice[s] * rows_ + p.warp.row);
-      }
-      ++count;
-    }
-    for (Pair& p : std::span(pairs, count)) {
-      p.colour = in_colour(p.of_wo, p.warp);
-      for (std::size_t s = 0; s < slices_; ++s) {
-        two_rows(colour_.data() + (p.of_wo.slice[s] * colour_size_ + p.colour.node) * stride_,
-                 std::size_t(colour_width_) * stride_);
-      }
-    }
-    for (const Pair& p : std::span(pairs, count)) {
-      float* value = out.data() + p.i * channels;
-      colour(p.of_wo, p.warp, p.colour, geometry[p.i].cos_theta_i, value);
-      for (std::size_t c = 0; c < channels; ++c) value[c] = max(value[c], 0.f);
-    }
-  }
+  look_up<32>(
+      geometry, [&](std::size_t i) { std::fill_n(out.data() + i * channels, channels, 0.f); },
+      [&](const ShadingGeometry<float>& g) { return known(g); },
+      [&](const Known& of_wo, const ShadingGeometry<float>& g) {
+        const InWarp at = in_warp(of_wo, g);
+        for (std::size_t s = 0; s < slices_; ++s) {
+          two_rows(warp_.data() + of_wo.slice[s] * warp_size_ + at.node, std::size_t(warp_width_));
+          prefetch(row_.data() + of_wo.slice[s] * rows_ + at.row);
+        }
+        return at;
+      },
+      [&](const Known& of_wo, const InWarp& warp) {
+        const InColour at = in_colour(of_wo, warp);
+        for (std::size_t s = 0; s < slices_; ++s) {
+          two_rows(colour_.data() + (of_wo.slice[s] * colour_size_ + at.node) * stride_,
+                   std::size_t(colour_width_) * stride_);
+        }
+        return at;
+      },
+      [&](std::size_t i, const Known& of_wo, const InWarp& warp, const InColour& at) {
+        float* value = out.data() + i * channels;
+        colour(of_wo, warp, at, geometry[i].cos_theta_i, value);
+        for (std::size_t c = 0; c < channels; ++c) value[c] = max(value[c], 0.f);
+      });
 }
 
 BrdfTraits RglWideTable::traits() const {

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "reflectree/error.hpp"
+#include "reflectree/text/printf_text.hpp"
 #include "refuse.hpp"
 
 namespace reflectree::detail {
@@ -14,15 +13,6 @@ namespace reflectree::detail {
 namespace {
 
 constexpr double degrees = 180 / pi_v<double>;
-
-__attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
-  char buffer[400];
-  va_list list;
-  va_start(list, format);
-  std::vsnprintf(buffer, sizeof buffer, format, list);
-  va_end(list);
-  return buffer;
-}
 
 float distance(Direction a, Direction b) {
   const Direction d = a - b;

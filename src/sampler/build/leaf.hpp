@@ -17,7 +17,7 @@ struct DyadicCell {
 };
 // No leaf keeps less than this share of the slab's mean density: none loses support.
 inline constexpr float floor_share = 1e-3f;
-inline constexpr int max_level = 15;  // locations pack into 16 bits an axis
+inline constexpr int max_level = 15;  // locations pack into 16 bits per axis
 
 struct Box {  // in square coordinates
   float x0, y0, width, height;

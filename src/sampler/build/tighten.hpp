@@ -14,7 +14,7 @@ namespace reflectree::detail {
 void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Survey& survey);
 
 // Random probes, `per_leaf` on average and in proportion to the leaf's cost, in the slabs whose mass of
-// overshoot (one a slab) is above `accepted`; every overshoot raises its leaf past the value found. Writes
+// overshoot (one per slab) is above `accepted`; every overshoot raises its leaf past the value found. Writes
 // the mass seen, before the raise, to `overshoot`.
 void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
            std::vector<float>& overshoot);

@@ -28,7 +28,7 @@ struct ModelInfo {
   std::vector<ParameterInfo> parameters;
   // What is wrong with a combination of values that are each in range, or nullptr.
   const char* (*fault)(std::span<const Rgb> values);
-  // The model with one value a parameter, in the order of `parameters`.
+  // The model with one value per parameter, in the order of `parameters`.
   AnyBrdf (*make)(std::span<const Rgb> values);
 };
 

@@ -32,7 +32,7 @@ class NeuralBrdf {
   std::string name_;
   std::array<Row, inputs> weights_1_{};
   std::array<Row, hidden> weights_2_{};
-  std::array<Row, outputs> weights_3_{};  // one row an output: dot products
+  std::array<Row, outputs> weights_3_{};  // one row per output: dot products
   Row bias_1_{}, bias_2_{};
   std::array<float, outputs> bias_3_{};
 };

@@ -8,7 +8,7 @@ namespace reflectree {
 // Rough diffuse surface of V-cavities, the "qualitative model":
 // f = rho / pi (A + B max(0, cos(phi_o - phi_i)) sin(max(theta)) tan(min(theta))).
 // Oren and Nayar 1994. Not physical: near grazing the albedo is rho (A + B / 2), which reaches
-// 1.015 rho at sigma = .22.
+// 1.015 rho at sigma = 0.22.
 struct OrenNayar {
   Rgb rho{0.5f, 0.5f, 0.5f};
   float sigma = 0.35f;

@@ -8,7 +8,7 @@ namespace reflectree {
 // A smooth diffuse base under a rough dielectric coat: GGX with Schlick's Fresnel term, and what the coat
 // lets in and out again, kd / pi (1 - F(co)) (1 - F(ci)), reciprocal as in Shirley et al. 1997. Dividing by
 // the mean of 1 - F would give a white base back all that the coat passes, but then the albedo exceeds 1
-// (by .0024 at alpha = .2, f0 = 0, 50 degrees): a rough coat reflects more than F(co).
+// (by 0.0024 at alpha = 0.2, f0 = 0, 50 degrees): a rough coat reflects more than F(co).
 struct Plastic {
   Rgb kd{0.1f, 0.3f, 0.6f};
   float f0 = 0.04f;

@@ -33,14 +33,14 @@ struct RglFields {
 // f(wo, wi) in sr^-1, Rgb. Finite and not negative everywhere; cos_theta_i below 1e-6 counts as 1e-6.
 class RglTable {
  public:
-  // Sizes must agree, theta_o ascend, and sigma and vndf be no less than 0, as io/rgl.hpp makes sure;
+  // Sizes must agree, theta_o ascend, and sigma and vndf be no less than 0, as the reader makes sure;
   // asserted but for the last.
   explicit RglTable(const RglFields& fields);
 
   Rgb operator()(const ShadingGeometry<float>& g) const;
   // The same before it is cut at 0, where the noise of measurement shows.
   Rgb unclipped(const ShadingGeometry<float>& g) const;
-  // Batches, three channels a pair, zero below the surface: pairs in a row that share wo share its look-up.
+  // Batches, three channels per pair, zero below the surface: pairs in a row that share wo share its look-up.
   void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<float> out) const;
   void eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const;
   BrdfTraits traits() const;

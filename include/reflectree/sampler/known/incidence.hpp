@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything about wo that a sampler needs, computed once: its local frame, slabs and albedo.
+// Everything about wo that a sampler needs, computed once: its turned frame, its azimuth and its albedo.
 #pragma once
 
 #include "reflectree/brdf/brdf.hpp"

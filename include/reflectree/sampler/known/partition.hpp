@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A partition of the known coordinates into slabs: a binary tree over a short list of named
-// coordinates (today theta_o; later wo on the square and up to two material parameters).
+// A partition of the known coordinates into slabs: a binary tree over a short list of named coordinates
+// (theta_o; of anisotropic functions also phi_o).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace reflectree {
 
 struct KnownCoordinate {
-  std::string name;  // "theta_o"
+  std::string name;  // "theta_o", "phi_o"
   float lo = 0, hi = 1;
   friend bool operator==(const KnownCoordinate&, const KnownCoordinate&) = default;
 };

@@ -3,16 +3,16 @@
 // Square coordinates are polar: x in [-1, 1] turns the azimuth, |phi| = pi/2 (1 - x), and |y| in [0, 1] goes
 // from the pole to the rim, so that a lobe about the pole is refined along y alone. y has the sign of the
 // azimuth, or is folded (symmetry.hpp).
+//
 //   projected_disk  y = sin^2 theta_i, equal steps of projected solid angle: T = t (the paper's measure)
 //   equal_area      y = 1 - cos theta_i, equal steps of solid angle: T = t cos_i
 //   half_vector     polar in wh, then wi = reflect(wo, wh): T = t cos_i 4 (wo.wh) times y
 //   back_vector     the same with wo mirrored about the normal: retro-reflective lobes stay put
-//   mirror_vector   polar about the mirror direction of wo, wi itself: round lobes and rings about it stay
-//   put normal_vector   the same about the normal: what stands there, however sharp stretched       cos
-//   theta_i = (1 - y)^(1/(2-a)): for f ~ cos_i^-a, 1 < a < 2 slope_star      half vectors by their slopes in
-//   the frame of the surface, stretched by s along x and 1/s
-//                   along y: the elliptic lobes of anisotropic microfacets are round and stay put for every
-//                   wo
+//   stretched       cos theta_i = (1 - y)^(1/(2-a)): for f ~ cos_i^-a, 1 < a < 2
+//   mirror_vector   polar about the mirror direction of wo, wi itself: round lobes and rings about it stay put
+//   normal_vector   the same about the normal: what stands there, however sharp
+//   slope_star      half vectors by their slopes in the frame of the surface, stretched by s along x and 1/s
+//                   along y: the elliptic lobes of anisotropic microfacets are round and stay put for every wo
 #pragma once
 
 #include <cstdint>
