@@ -1,25 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0
+ * Reflectree's samplers in one C99 file (and C++): draws directions from a file that `reflectree build` saved, or from
+ * the array that `reflectree export` wrote. Needs libm; allocates while it loads and never again.
  *
- * Reflectree's samplers in one C99 file (and C++): draws directions from a file that `reflectree build` saved, or
- * from the array that `reflectree export` wrote. Needs libm; allocates while it loads and never again.
- *
- *   rfl_sampler s;
  *   const char* error = rfl_load(&s, "gold.rfl");    null, or what is wrong; rfl_free(&s) in the end
- *   rfl_viewer v;
  *   if (rfl_view(&s, wo, &v)) {                      once for each wo; 0: no sample
  *     rfl_one_shot(&s, &v, bits, &d);                d.wi, d.pdf; the weight is d.scale * f(wo, d.wi)
- *     rfl_exact(&s, &v, f, user, 3, next, state, &d, value);     density exactly proportional to the target
+ *     do rfl_propose(&s, &v, bits, &c);              density exactly proportional to the target
+ *     while (!rfl_accept(&v, &c, rfl_target(&s, f(wo, c.wi), 3), a_fifth_word, &d));    RFL_MAX_TRIALS times
  *   }
- *
  * Directions are unit vectors in the surface's frame, z the normal, pointing away: wo towards the viewer, wi towards
  * the light. f is in sr^-1 without cosine, every pdf per solid angle, weight = f cos_i / pdf. Random numbers are words
- * of 32 uniform bits. Samplers are read-only: threads share them. Anisotropic samplers are refused.
+ * of 32 uniform bits. Samplers are read-only: threads share them. Anisotropic ones are refused.
  *
  * Results have the bits of the C++ library's where floats are not contracted to fused multiply-adds: -ffp-contract=off.
  * `gcc -std=c99` is so anyway; gcc -std=gnu99, g++ and clang are not, once -march= offers them. Never -ffast-math. */
 #ifndef REFLECTREE_SAMPLE_H
 #define REFLECTREE_SAMPLE_H
-
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -27,18 +23,16 @@
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#define RFL_FN static inline
 #if defined(__FAST_MATH__)
 #error "reflectree_sample.h needs comparisons that see NaN; compile without -ffast-math"
 #endif
-
 /* ---- The array of words. Its head: magic, version, words; domain, half, exponent; target, channel, scale; of the
  * albedo, exact mode and one-shot mode each the shift, borders and guide of a lookup, and pieces or slabs. Tables are
  * named by the number of words before them. ---- */
-
 enum { RFL_MAGIC = 0x574c4652, RFL_VERSION = 1, RFL_HEAD = 24, RFL_ALBEDO = 9, RFL_EXACT = 13, RFL_ONE_SHOT = 17 };
 enum { RFL_LEAF = 5, RFL_SLAB = 5, RFL_MAX_TRIALS = 256 };
 enum { RFL_PROJECTED_DISK, RFL_EQUAL_AREA, RFL_HALF_VECTOR, RFL_BACK_VECTOR, RFL_STRETCHED, RFL_MIRROR_VECTOR };
-
 typedef struct { float x, y, z; } rfl_vec;
 /* Over cosines. table: of a piece, base and slope; of a slab, where its leaves are, how many, where its nodes are,
  * the capacity of a bucket, the volume. A leaf: threshold, height, alias | x << 16, y | level_x << 16 | level_y << 24,
@@ -55,166 +49,126 @@ typedef struct { rfl_vec known, wo; float cos_phi, sin_phi, albedo; } rfl_viewer
 typedef struct { rfl_vec wi; float pdf, scale; } rfl_draw;                        /* scale: the weight over f */
 typedef struct { rfl_vec wi; float cos_i, area, majorant; } rfl_candidate;        /* a trial of exact mode */
 typedef struct { rfl_vec wi; float area; } rfl_point;
-typedef void (*rfl_function)(void* user, rfl_vec wo, rfl_vec wi, float* f);
-typedef uint32_t (*rfl_bits)(void* state);
-
-static inline float rfl_float(uint32_t w) { float f; memcpy(&f, &w, 4); return f; }
-static inline uint32_t rfl_word(float f) { uint32_t w; memcpy(&w, &f, 4); return w; }
-static inline float rfl_min(float a, float b) { return b < a ? b : a; }
-static inline float rfl_max(float a, float b) { return a < b ? b : a; }
-static inline float rfl_clamp(float x) { return rfl_min(rfl_max(x, 0.f), 1.f); }
-static inline float rfl_by_sign(float s, float plus, float minus) { /* by the sign bit, without a branch */
-  return rfl_float(rfl_word(plus) ^ ((rfl_word(plus) ^ rfl_word(minus)) & (0u - (rfl_word(s) >> 31))));
+RFL_FN float rfl_float(uint32_t w) { float f; memcpy(&f, &w, 4); return f; }
+RFL_FN uint32_t rfl_word(float f) { uint32_t w; memcpy(&w, &f, 4); return w; }
+RFL_FN float rfl_min(float a, float b) { return b < a ? b : a; }
+RFL_FN float rfl_max(float a, float b) { return a < b ? b : a; }
+RFL_FN float rfl_clamp(float x) { return rfl_min(rfl_max(x, 0.f), 1.f); }
+RFL_FN float rfl_by_sign(float s, float a, float b) { /* a or b, without a branch */
+  return rfl_float(rfl_word(a) ^ ((rfl_word(a) ^ rfl_word(b)) & (0u - (rfl_word(s) >> 31))));
 }
-static inline rfl_vec rfl_vec3(float x, float y, float z) { rfl_vec v; v.x = x; v.y = y; v.z = z; return v; }
-static inline float rfl_dot(rfl_vec a, rfl_vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline rfl_vec rfl_turn(rfl_vec w, float c, float s) {
-  return rfl_vec3(w.x * c - w.y * s, w.x * s + w.y * c, w.z);
-}
-
+RFL_FN rfl_vec rfl_vec3(float x, float y, float z) { rfl_vec v; v.x = x; v.y = y; v.z = z; return v; }
+RFL_FN float rfl_dot(rfl_vec a, rfl_vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+RFL_FN rfl_vec rfl_turn(rfl_vec w, float c, float s) { return rfl_vec3(w.x * c - w.y * s, w.x * s + w.y * c, w.z); }
 static const float rfl_pi = 3.14159274f, rfl_least = 1e-7f, rfl_min_cos = 7.62939453125e-06f;
-
-static inline rfl_lookup rfl_lookup_of(const uint32_t* words, const uint32_t* head) {
-  rfl_lookup l;
-  l.shift = head[0], l.borders = words + head[1], l.guide = words + head[2], l.table = words + head[3];
-  return l;
-}
 /* An exported array, which must stay, as a sampler. Null, or what is wrong. */
-static inline const char* rfl_open(rfl_sampler* s, const uint32_t* w, size_t count) {
+RFL_FN const char* rfl_open(rfl_sampler* s, const uint32_t* w, size_t count) {
+  rfl_lookup* const l[3] = {&s->albedo, &s->exact, &s->one_shot};
+  int i;
   memset(s, 0, sizeof *s);
   if (!w || count < RFL_HEAD || w[0] != (uint32_t)RFL_MAGIC || w[1] != (uint32_t)RFL_VERSION || w[2] != count)
     return "no array of this version and length; write it with this header's `reflectree export`";
   s->words = w, s->kind = (int)w[3], s->half = (int)w[4], s->exponent = rfl_float(w[5]);
   s->target = (int)w[6], s->channel = (int)w[7], s->scale = rfl_float(w[8]);
-  s->albedo = rfl_lookup_of(w, w + RFL_ALBEDO);
-  s->exact = rfl_lookup_of(w, w + RFL_EXACT), s->one_shot = rfl_lookup_of(w, w + RFL_ONE_SHOT);
+  for (i = 0, w += RFL_ALBEDO; i < 3; ++i, w += 4)
+    l[i]->shift = w[0], l[i]->borders = s->words + w[1], l[i]->guide = s->words + w[2], l[i]->table = s->words + w[3];
   return NULL;
 }
-
 /* ---- The viewer ---- */
-
-static inline uint32_t rfl_find(const rfl_lookup* l, float c) {
+RFL_FN uint32_t rfl_find(const rfl_lookup* l, float c) {
   uint32_t i = l->guide[(rfl_word(c) - rfl_word(rfl_min_cos)) >> l->shift];
-  i += rfl_float(l->borders[i + 1]) <= c;
-  while (rfl_float(l->borders[i + 1]) <= c) ++i;
+  for (i += rfl_float(l->borders[i + 1]) <= c; rfl_float(l->borders[i + 1]) <= c;) ++i;
   return i;
 }
 /* 0 is "no sample": wo at or below the horizon, not finite, not of unit length, or albedo 0. */
-static inline int rfl_view(const rfl_sampler* s, rfl_vec wo, rfl_viewer* v) {
-  const float sin2 = wo.x * wo.x + wo.y * wo.y;
-  float sine, inverse, c;
+RFL_FN int rfl_view(const rfl_sampler* s, rfl_vec wo, rfl_viewer* v) {
+  const float s2 = wo.x * wo.x + wo.y * wo.y, sine = sqrtf(s2), inv = sine > 0 ? 1 / sine : 0.f, c = rfl_min(wo.z, 1.f);
   const uint32_t* piece;
-  if (!(wo.z >= rfl_min_cos && fabsf(sin2 + wo.z * wo.z - 1) <= 1e-3f)) return 0;
-  sine = sqrtf(sin2), inverse = sine > 0 ? 1 / sine : 0.f, c = rfl_min(wo.z, 1.f);
-  v->known = wo, v->wo = rfl_vec3(sine, 0, c), v->sin_phi = wo.y * inverse;
-  v->cos_phi = sine > 0 ? wo.x * inverse : 1.f;
+  if (!(wo.z >= rfl_min_cos && fabsf(s2 + wo.z * wo.z - 1) <= 1e-3f)) return 0;
+  v->known = wo, v->wo = rfl_vec3(sine, 0, c), v->cos_phi = sine > 0 ? wo.x * inv : 1.f, v->sin_phi = wo.y * inv;
   piece = s->albedo.table + 2 * (size_t)rfl_find(&s->albedo, c);
-  v->albedo = rfl_float(piece[0]) + rfl_float(piece[1]) * c;
-  return v->albedo > 0;
+  return (v->albedo = rfl_float(piece[0]) + rfl_float(piece[1]) * c) > 0;
 }
-static inline const uint32_t* rfl_slab_at(const rfl_lookup* forest, const rfl_viewer* v) {
-  return forest->table + RFL_SLAB * (size_t)rfl_find(forest, v->wo.z);
+RFL_FN const uint32_t* rfl_slab_at(const rfl_lookup* l, const rfl_viewer* v) {
+  return l->table + RFL_SLAB * (size_t)rfl_find(l, v->wo.z);
 }
-static inline rfl_vec rfl_inward(const rfl_viewer* v, rfl_vec w) {
-  return rfl_vec3(w.x * v->cos_phi + w.y * v->sin_phi, w.y * v->cos_phi - w.x * v->sin_phi, w.z);
-}
-
 /* ---- The domain: from the square to wi, with d(projected solid angle) / d(share); domain_map.hpp derives it ---- */
-
-static inline void rfl_star(float sin_o, float cos_o, float cos_phi, float* p, float* c) {
+RFL_FN void rfl_star(float sin_o, float cos_o, float cos_phi, float* p, float* c) {
   const float c2 = cos_o * cos_o, sx = sin_o * cos_phi, l = sqrtf(c2 + sx * sx) + fabsf(sx);
   *p = rfl_by_sign(sx, l * l, c2), *c = cos_o * l;
 }
-static inline void rfl_rim(float sin_o, float cos_o, float cos_phi, float* p, float* c, float* zr) {
+RFL_FN void rfl_rim(float sin_o, float cos_o, float cos_phi, float* p, float* c, float* zr) {
   const float sx = sin_o * cos_phi, l = sqrtf(cos_o * cos_o + sx * sx) + fabsf(sx);
   *p = rfl_by_sign(sx, cos_o, l), *c = rfl_by_sign(sx, l, cos_o), *zr = rfl_by_sign(sx, cos_o * cos_o / l, l);
 }
-static inline rfl_point rfl_lift(const rfl_sampler* s, rfl_vec wo, float px, float py) {
+RFL_FN rfl_point rfl_lift(const rfl_sampler* s, rfl_vec wo, float px, float py) {
   rfl_point o;
-  float y = fabsf(py), p, c, d, t, r, z, zr, power;
-  /* ux = cos phi = sin(pi px / 2), uy = sin phi on the side of py. */
-  const float h = 0.5f * px, q = h * h, q2 = q * q;
+  float y = rfl_max(fabsf(py), 1e-12f), p, c, d, t, r = fabsf(py), z, zr;
+  const float h = 0.5f * px, q = h * h, q2 = q * q; /* ux = cos phi = sin(pi px / 2), uy = sin phi on the side of py */
+  const float ux = h * ((3.14159264f - q * 5.16771009f) + q2 * ((2.55007766f - q * 0.598292159f) + q2 * 0.0776594082f));
   const float u = (1.f - q * 4.93480214f) +
                   q2 * ((4.05870916f - q * 1.33521206f) + q2 * (0.234937559f - q * 0.0243967166f));
-  const float ux = h * ((3.14159264f - q * 5.16771009f) +
-                        q2 * ((2.55007766f - q * 0.598292159f) + q2 * 0.0776594082f));
   const float uy = rfl_float(rfl_word(u) ^ (rfl_word(py) & 0x80000000u));
   if (s->kind == RFL_HALF_VECTOR || s->kind == RFL_BACK_VECTOR) {
     const float ax = (s->kind == RFL_HALF_VECTOR ? 1.f : -1.f) * wo.x;
     float won, cos2, twice;
-    y = rfl_max(y, 1e-12f), rfl_star(ax, wo.z, ux, &p, &c);
-    d = p / (p + (c - p) * y), t = y * d;
+    rfl_star(ax, wo.z, ux, &p, &c), d = p / (p + (c - p) * y), t = y * d;
     won = rfl_max(ax * ux * t + wo.z, rfl_least), cos2 = 1.f / (1.f + t * t), twice = 2.f * won * cos2;
     o.wi = rfl_vec3(twice * t * ux - ax, twice * t * uy, rfl_max(twice - wo.z, rfl_least));
-    o.area = o.wi.z * (8 * rfl_pi) * won * (cos2 * cos2) * (t * d * d);
-    return o;
+    return o.area = o.wi.z * (8 * rfl_pi) * won * (cos2 * cos2) * (t * d * d), o;
   }
   if (s->kind >= RFL_MIRROR_VECTOR) { /* or about the normal */
     const float ax = s->kind == RFL_MIRROR_VECTOR ? wo.x : 0.f, az = s->kind == RFL_MIRROR_VECTOR ? wo.z : 1.f;
     float tt, inverse;
-    y = rfl_max(y, 1e-12f), rfl_rim(ax, az, ux, &p, &c, &zr);
-    d = p / (p + (c - p) * y), t = y * d, tt = t * t, inverse = 1.f / (1.f + tt);
+    rfl_rim(ax, az, ux, &p, &c, &zr), d = p / (p + (c - p) * y), t = y * d, tt = t * t, inverse = 1.f / (1.f + tt);
     z = rfl_max(d * (1.f - y) * (zr * t + az) * inverse, rfl_least);
     o.wi = rfl_vec3(-(ax * (1.f - tt) + 2.f * t * az * ux) * inverse, 2.f * t * uy * inverse, z);
-    o.area = z * (8 * rfl_pi) * t * (inverse * inverse) * (d * d);
-    return o;
+    return o.area = z * (8 * rfl_pi) * t * (inverse * inverse) * (d * d), o;
   }
   if (s->kind == RFL_PROJECTED_DISK) {
-    r = sqrtf(y), z = rfl_max(sqrtf(1.f - y), rfl_least), o.area = rfl_pi;
+    z = rfl_max(sqrtf(1.f - r), rfl_least), r = sqrtf(r), o.area = rfl_pi;
   } else if (s->kind == RFL_EQUAL_AREA) {
-    r = sqrtf(y * (2.f - y)), z = rfl_max(1.f - y, rfl_least), o.area = 2 * rfl_pi * z;
+    z = rfl_max(1.f - r, rfl_least), r = sqrtf(r * (2.f - r)), o.area = 2 * rfl_pi * z;
   } else {
-    power = 1 / (2 - s->exponent), t = rfl_max(1.f - y, 1e-7f);
-    z = rfl_max(powf(t, power), rfl_least), r = sqrtf(1.f - z * z), o.area = 2 * rfl_pi * power * z * z / t;
+    p = 1 / (2 - s->exponent), t = rfl_max(1.f - r, 1e-7f), z = rfl_max(powf(t, p), rfl_least);
+    r = sqrtf(1.f - z * z), o.area = 2 * rfl_pi * p * z * z / t;
   }
-  o.wi = rfl_vec3(r * ux, r * uy, z);
-  return o;
+  return o.wi = rfl_vec3(r * ux, r * uy, z), o;
 }
-static inline float rfl_quarter_atan(float t) {
-  const float s = t * t;
-  float p = (-0.00597563674f * s + 0.0308790214f) * s - 0.0757402948f;
+RFL_FN float rfl_quarter_atan(float t) {
+  float s = t * t, p = (-0.00597563674f * s + 0.0308790214f) * s - 0.0757402948f;
   p = (((p * s + 0.126232606f) * s - 0.178501543f) * s + 0.254262416f) * s;
   return t * ((p - 0.424396087f) * s + 1.27323942f);
 }
 /* The inverse of rfl_lift; with half squares wi.y >= 0. */
-static inline void rfl_lower(const rfl_sampler* s, rfl_vec wo, rfl_vec wi, float* px, float* py) {
+RFL_FN void rfl_lower(const rfl_sampler* s, rfl_vec wo, rfl_vec wi, float* px, float* py) {
+  const float ax = (s->kind == RFL_BACK_VECTOR ? -1.f : 1.f) * wo.x, sin2 = wi.x * wi.x + wi.y * wi.y;
+  const rfl_vec o = rfl_vec3(ax, 0, wo.z), m = rfl_vec3(o.x - wi.x, o.y - wi.y, o.z - wi.z);
+  const rfl_vec axis = s->kind == RFL_MIRROR_VECTOR ? wo : rfl_vec3(0, 0, 1);
   rfl_vec w = wi;
-  float y, p, c, t, sine, zr, a, b;
-  if (s->kind == RFL_HALF_VECTOR || s->kind == RFL_BACK_VECTOR) {
-    const float ax = (s->kind == RFL_HALF_VECTOR ? 1.f : -1.f) * wo.x;
-    const rfl_vec o = rfl_vec3(ax, 0, wo.z), m = rfl_vec3(o.x - wi.x, o.y - wi.y, o.z - wi.z);
+  float y = s->kind == RFL_EQUAL_AREA ? sin2 / (1 + wi.z) : sin2, p, c, t, sine, zr, a, b;
+  if (s->kind == RFL_STRETCHED) {
+    y = 1 - powf(wi.z, 2 - s->exponent);
+  } else if (s->kind == RFL_HALF_VECTOR || s->kind == RFL_BACK_VECTOR) {
     w = rfl_vec3(o.x + wi.x, o.y + wi.y, o.z + wi.z);
-    if (rfl_dot(o, wi) < 0.f)
+    if (rfl_dot(o, wi) < 0.f) /* what is rounding is taken out of the sum */
       t = rfl_dot(w, m) / rfl_dot(m, m), w = rfl_vec3(w.x - t * m.x, w.y - t * m.y, w.z - t * m.z);
     t = 1.f / sqrtf(rfl_dot(w, w)), w = rfl_vec3(t * w.x, t * w.y, t * w.z);
     sine = sqrtf(rfl_max(w.x * w.x + w.y * w.y, rfl_least * rfl_least)), t = sine / rfl_max(w.z, 1e-12f);
-    rfl_star(ax, wo.z, w.x / sine, &p, &c);
-    y = p * t / (p - (c - p) * t);
+    rfl_star(ax, wo.z, w.x / sine, &p, &c), y = p * t / (p - (c - p) * t);
   } else if (s->kind >= RFL_MIRROR_VECTOR) {
-    const rfl_vec m = s->kind == RFL_MIRROR_VECTOR ? wo : rfl_vec3(0, 0, 1);
-    const rfl_vec off = rfl_vec3(wi.x + m.x, wi.y, wi.z - m.z);
-    w = rfl_vec3(-m.z * off.x - m.x * off.z, wi.y, m.z * wi.z - m.x * wi.x);
+    a = wi.x + axis.x, b = wi.z - axis.z;
+    w = rfl_vec3(-axis.z * a - axis.x * b, wi.y, axis.z * wi.z - axis.x * wi.x);
     sine = sqrtf(rfl_max(w.x * w.x + w.y * w.y, rfl_least * rfl_least));
     t = w.z > 0 ? sine / (1 + w.z) : (1 - w.z) / sine;
-    rfl_rim(m.x, m.z, w.x / sine, &p, &c, &zr);
-    y = p * t / (p - (c - p) * t);
-  } else if (s->kind == RFL_STRETCHED) {
-    y = 1 - powf(wi.z, 2 - s->exponent);
-  } else {
-    y = wi.x * wi.x + wi.y * wi.y;
-    if (s->kind == RFL_EQUAL_AREA) y = y / (1 + wi.z);
+    rfl_rim(axis.x, axis.z, w.x / sine, &p, &c, &zr), y = p * t / (p - (c - p) * t);
   }
   y = rfl_clamp(y), a = fabsf(w.x), b = fabsf(w.y);
   t = a > b ? 1 - 0.5f * rfl_quarter_atan(b / a) : b > 0 ? 0.5f * rfl_quarter_atan(a / b) : 1.f;
-  *px = w.x < 0 ? -t : t;
-  *py = !s->half && w.y < 0 ? -y : y;
+  *px = w.x < 0 ? -t : t, *py = !s->half && w.y < 0 ? -y : y;
 }
-
-/* ---- Leaves ---- */
-
-/* By an alias table (Walker 1977) in integers; spare: random bits that are left. */
-static inline const uint32_t* rfl_choose(const rfl_sampler* s, const uint32_t* slab, const uint32_t* bits,
-                                         uint32_t* spare) {
+/* ---- A leaf, by an alias table (Walker 1977) in integers; spare: random bits that are left ---- */
+RFL_FN const uint32_t* rfl_choose(const rfl_sampler* s, const uint32_t* slab, const uint32_t* bits, uint32_t* spare) {
   const uint64_t n = slab[1], m = slab[3], high = bits[0] * n + ((bits[1] * n) >> 32), low = bits[1] * n;
   const uint64_t rest = (high & 0xffffffffu) * m + (((low & 0xffffffffu) * m) >> 32);
   const uint32_t *leaves = s->words + slab[0], bucket = (uint32_t)(high >> 32);
@@ -222,23 +176,23 @@ static inline const uint32_t* rfl_choose(const rfl_sampler* s, const uint32_t* s
   *spare = (uint32_t)rest;
   return leaves + RFL_LEAF * (size_t)((bucket & own) | (leaf[2] & 0xffffu & ~own));
 }
-static inline int rfl_byte(uint32_t b) { return (int)(b & 127u) - (int)(b & 128u); }
-static inline float rfl_slope(uint32_t b) { return (float)rfl_byte(b) * 0.0078125f; }
-static inline float rfl_power(uint32_t exponent) { return rfl_float(exponent << 23); }
+RFL_FN int rfl_byte(uint32_t b) { return (int)(b & 127u) - (int)(b & 128u); }
+RFL_FN float rfl_slope(uint32_t b) { return (float)rfl_byte(b) * 0.0078125f; }
+RFL_FN float rfl_power(uint32_t exponent) { return rfl_float(exponent << 23); }
 /* From 1 + g s, s in [-1, 1], by its inverse CDF, as (s + 1) / 2. */
-static inline float rfl_linear(float g, float u) {
+RFL_FN float rfl_linear(float g, float u) {
   const float a = 1.f - g, b = 1.f + g;
   return rfl_min(2.f * u / (a + sqrtf(a * a + u * (b * b - a * a))), 1.f);
 }
 /* The same without a root: with probability |g| the larger (g < 0: smaller) of two uniforms, else the first. */
-static inline float rfl_mix(int slope, uint32_t first, uint32_t second) {
+RFL_FN float rfl_mix(int slope, uint32_t first, uint32_t second) {
   const uint32_t a = first >> 8, b = second >> 8, low = a < b ? a : b, high = a ^ b ^ low;
   const uint32_t other = high ^ ((high ^ low) & (0u - (uint32_t)(slope < 0)));
   const uint32_t mixed = 0u - (uint32_t)((int)(first & 127u) < (slope < 0 ? -slope : slope));
   return (float)(a ^ ((a ^ other) & mixed)) * 5.9604644775390625e-08f;
 }
 /* The point at tx, ty in [0, 1] across a leaf, and the height there. */
-static inline float rfl_at(const uint32_t* leaf, int half, float tx, float ty, float* px, float* py) {
+RFL_FN float rfl_at(const uint32_t* leaf, int half, float tx, float ty, float* px, float* py) {
   const int x = (int)(leaf[2] >> 16), y = (int)(leaf[3] & 0xffffu);
   const float gx = rfl_slope(leaf[4]), gy = rfl_slope(leaf[4] >> 8);
   *px = (float)(x - 0x4000) * 6.103515625e-05f + rfl_power(128u - ((leaf[3] >> 16) & 255u)) * tx;
@@ -247,67 +201,58 @@ static inline float rfl_at(const uint32_t* leaf, int half, float tx, float ty, f
   return rfl_float(leaf[1]) * ((1.f - gx) + 2.f * gx * tx) * ((1.f - gy) + 2.f * gy * ty);
 }
 /* From four words: a leaf, a point in it, the coin for the side of half squares. */
-static inline rfl_point rfl_place(const rfl_sampler* s, const rfl_lookup* forest, const rfl_viewer* v,
-                                  const uint32_t* bits, float* height) {
+RFL_FN rfl_point rfl_place(const rfl_sampler* s, const rfl_lookup* l, const rfl_viewer* v, const uint32_t* b, float* h) {
   uint32_t spare;
-  const uint32_t* leaf = rfl_choose(s, rfl_slab_at(forest, v), bits, &spare);
-  const float tx = rfl_mix(rfl_byte(leaf[4]), bits[2], spare);
-  const float ty = rfl_linear(rfl_slope(leaf[4] >> 8), (float)(bits[3] >> 8) * 5.9604644775390625e-08f);
+  const uint32_t* leaf = rfl_choose(s, rfl_slab_at(l, v), b, &spare);
+  const float tx = rfl_mix(rfl_byte(leaf[4]), b[2], spare);
+  const float ty = rfl_linear(rfl_slope(leaf[4] >> 8), (float)(b[3] >> 8) * 5.9604644775390625e-08f);
   float px, py;
-  *height = rfl_at(leaf, s->half, tx, ty, &px, &py);
-  return rfl_lift(s, v->wo, px, s->half && (bits[3] & 1u) ? -py : py);
+  *h = rfl_at(leaf, s->half, tx, ty, &px, &py);
+  return rfl_lift(s, v->wo, px, s->half && (b[3] & 1u) ? -py : py);
 }
-
-/* ---- One-shot mode ---- */
-
-static inline void rfl_finish(const rfl_viewer* v, rfl_point p, float height, rfl_draw* out) {
-  out->wi = rfl_turn(p.wi, v->cos_phi, v->sin_phi), out->pdf = height / p.area * p.wi.z, out->scale = p.area / height;
-}
-/* From four words of random bits. */
-static inline void rfl_one_shot(const rfl_sampler* s, const rfl_viewer* v, const uint32_t* bits, rfl_draw* out) {
+/* ---- One-shot mode: from four words of random bits ---- */
+RFL_FN void rfl_one_shot(const rfl_sampler* s, const rfl_viewer* v, const uint32_t* bits, rfl_draw* out) {
   float height;
   const rfl_point p = rfl_place(s, &s->one_shot, v, bits, &height);
-  rfl_finish(v, p, height, out);
+  out->wi = rfl_turn(p.wi, v->cos_phi, v->sin_phi), out->pdf = height / p.area * p.wi.z, out->scale = p.area / height;
 }
 /* From two uniforms of [0, 1], monotone; 0 where they are none. */
-static inline int rfl_one_shot_uniforms(const rfl_sampler* s, const rfl_viewer* v, double u1, double u2,
-                                        rfl_draw* out) {
-  const uint32_t* slab = rfl_slab_at(&s->one_shot, v);
-  const uint32_t *node = s->words + slab[2], *leaf = s->words + slab[0];
+RFL_FN int rfl_one_shot_uniforms(const rfl_sampler* s, const rfl_viewer* v, double u1, double u2, rfl_draw* out) {
+  const uint32_t *slab = rfl_slab_at(&s->one_shot, v), *node = s->words + slab[2], *leaf = s->words + slab[0];
   const int below = s->half && u2 < 0.5;
   double lo[2] = {0, 0}, size[2] = {1, 1}, u[2];
-  float px, py, height, tx, ty;
-  uint32_t left = slab[1];
+  float px, py, height, t[2];
+  uint32_t left = slab[1], i;
+  rfl_point p;
   if (!(u1 >= 0 && u1 <= 1 && u2 >= 0 && u2 <= 1)) return 0;
   u[0] = u1, u[1] = !s->half ? u2 : below ? 1 - 2 * u2 : 2 * u2 - 1;
   while (left > 1) {
-    const int axis = (node[1] >> 31) == 0;
-    const uint32_t lower_leaves = node[1] & 0x7fffffffu;
+    const uint32_t axis = 1u - (node[1] >> 31), lower_leaves = node[1] & 0x7fffffffu;
     const double lower = size[axis] * (double)rfl_float(node[0]);
     const int up = u[axis] >= lo[axis] + lower;
-    lo[axis] += up ? lower : 0, size[axis] = up ? size[axis] - lower : lower;
-    left = up ? left - lower_leaves : lower_leaves, leaf += up ? RFL_LEAF * (size_t)lower_leaves : 0;
-    node += 2 * (size_t)(up ? lower_leaves : 1);
+    lo[axis] += up ? lower : 0, size[axis] = up ? size[axis] - lower : lower, node += up ? 2 * lower_leaves : 2;
+    left = up ? left - lower_leaves : lower_leaves, leaf += up ? RFL_LEAF * lower_leaves : 0;
   }
-  tx = rfl_linear(rfl_slope(leaf[4]), rfl_min((float)((u[0] - lo[0]) / size[0]), 1.f));
-  ty = rfl_linear(rfl_slope(leaf[4] >> 8), rfl_min((float)((u[1] - lo[1]) / size[1]), 1.f));
-  height = rfl_at(leaf, s->half, tx, ty, &px, &py);
-  rfl_finish(v, rfl_lift(s, v->wo, px, below ? -py : py), height, out);
+  for (i = 0; i < 2; ++i)
+    t[i] = rfl_linear(rfl_slope(leaf[4] >> (8 * i)), rfl_min((float)((u[i] - lo[i]) / size[i]), 1.f));
+  height = rfl_at(leaf, s->half, t[0], t[1], &px, &py), p = rfl_lift(s, v->wo, px, below ? -py : py);
+  out->wi = rfl_turn(p.wi, v->cos_phi, v->sin_phi), out->pdf = height / p.area * p.wi.z, out->scale = p.area / height;
   return 1;
 }
-/* Density per share at a point of the square, and the uniforms that lead there. */
-static inline float rfl_locate(const rfl_sampler* s, const rfl_viewer* v, float px, float py, double* u) {
-  const uint32_t* slab = rfl_slab_at(&s->one_shot, v);
-  const uint32_t *node = s->words + slab[2], *leaf = s->words + slab[0];
+/* The uniforms that rfl_one_shot_uniforms takes to wi, up to rounding, and the pdf there; 0 below the horizon. */
+RFL_FN float rfl_one_shot_invert(const rfl_sampler* s, const rfl_viewer* v, rfl_vec wi, double* u) {
+  const uint32_t *slab = rfl_slab_at(&s->one_shot, v), *node = s->words + slab[2], *leaf = s->words + slab[0];
+  rfl_vec w = rfl_vec3(wi.x * v->cos_phi + wi.y * v->sin_phi, wi.y * v->cos_phi - wi.x * v->sin_phi, wi.z);
+  const int below = s->half && w.y < 0;
   double lo[2] = {0, 0}, share[2] = {1, 1};
-  float start[2] = {-1, -1}, size[2] = {2, 2}, p[2], g[2], t[2];
-  uint32_t left = slab[1];
-  int i;
-  p[0] = px, p[1] = py, g[0] = g[1] = 0;
-  if (s->half) start[1] = 0, size[1] = 1;
+  float start[2] = {-1, -1}, size[2] = {2, 2}, p[2], t[2], px, py;
+  uint32_t left = slab[1], i;
+  rfl_point at;
+  if (!(wi.z > 0)) return 0;
+  if (s->half) w.y = fabsf(w.y), start[1] = 0, size[1] = 1;
+  rfl_lower(s, v->wo, w, p, p + 1), at = rfl_lift(s, v->wo, p[0], p[1]);
   while (left > 1) {
-    const int axis = (node[1] >> 31) == 0;
-    const uint32_t lower_leaves = node[1] & 0x7fffffffu;
+    const uint32_t axis = 1u - (node[1] >> 31), lower_leaves = node[1] & 0x7fffffffu;
     const double lower = (double)rfl_float(node[0]);
     size[axis] *= 0.5f;
     if (p[axis] < start[axis] + size[axis]) {
@@ -318,39 +263,18 @@ static inline float rfl_locate(const rfl_sampler* s, const rfl_viewer* v, float 
     }
   }
   for (i = 0; i < 2; ++i) {
-    g[i] = rfl_slope(leaf[4] >> (8 * i)), t[i] = rfl_clamp((p[i] - start[i]) / size[i]);
-    u[i] = lo[i] + share[i] * (double)(t[i] * (1 - g[i] * (1 - t[i])));
+    t[i] = rfl_clamp((p[i] - start[i]) / size[i]);
+    u[i] = lo[i] + share[i] * (double)(t[i] * (1 - rfl_slope(leaf[4] >> (8 * i)) * (1 - t[i])));
   }
-  return rfl_at(leaf, s->half, t[0], t[1], &px, &py);
-}
-/* Per solid angle. */
-static inline float rfl_one_shot_pdf(const rfl_sampler* s, const rfl_viewer* v, rfl_vec wi) {
-  rfl_vec w = rfl_inward(v, wi);
-  rfl_point p;
-  float px, py;
-  double u[2];
-  if (!(wi.z > 0)) return 0;
-  if (s->half) w.y = fabsf(w.y);
-  rfl_lower(s, v->wo, w, &px, &py);
-  p = rfl_lift(s, v->wo, px, py);
-  return rfl_locate(s, v, px, py, u) * p.wi.z / p.area;
-}
-/* The uniforms that rfl_one_shot_uniforms takes to wi, up to rounding; 0 below the horizon. */
-static inline int rfl_one_shot_invert(const rfl_sampler* s, const rfl_viewer* v, rfl_vec wi, double* u) {
-  rfl_vec w = rfl_inward(v, wi);
-  const int below = s->half && w.y < 0;
-  float px, py;
-  if (!(wi.z > 0)) return 0;
-  if (s->half) w.y = fabsf(w.y);
-  rfl_lower(s, v->wo, w, &px, &py), rfl_locate(s, v, px, py, u);
   if (s->half) u[1] = below ? 0.5 * (1 - u[1]) : 0.5 * (1 + u[1]);
-  return 1;
+  return rfl_at(leaf, s->half, t[0], t[1], &px, &py) * at.wi.z / at.area;
 }
-
-/* ---- Exact mode ---- */
-
-/* The scalar that is sampled, from the channels of f. */
-static inline float rfl_target(const rfl_sampler* s, const float* f, int channels) {
+RFL_FN float rfl_one_shot_pdf(const rfl_sampler* s, const rfl_viewer* v, rfl_vec wi) {
+  double u[2];
+  return rfl_one_shot_invert(s, v, wi, u);
+}
+/* ---- Exact mode: first the scalar that is sampled, from the channels of f ---- */
+RFL_FN float rfl_target(const rfl_sampler* s, const float* f, int channels) {
   float t = 0, sum = 0;
   int c;
   if (channels == 1) return s->scale * f[0];
@@ -364,40 +288,20 @@ static inline float rfl_target(const rfl_sampler* s, const float* f, int channel
   if (s->target == 3) t = f[s->channel < channels ? s->channel : channels - 1];
   return 0.99f * (s->scale * t) + 0.01f * sqrtf(sum);
 }
-/* One trial, from four words. Evaluate f at v->known and out->wi and ask rfl_accept; after a rejection propose again.
- * RFL_MAX_TRIALS without success are no sample. */
-static inline void rfl_propose(const rfl_sampler* s, const rfl_viewer* v, const uint32_t* bits, rfl_candidate* out) {
+/* One trial, from four words. Evaluate f at v->known and out->wi, and ask rfl_accept; then propose again. */
+RFL_FN void rfl_propose(const rfl_sampler* s, const rfl_viewer* v, const uint32_t* bits, rfl_candidate* out) {
   const rfl_point p = rfl_place(s, &s->exact, v, bits, &out->majorant);
   out->wi = rfl_turn(p.wi, v->cos_phi, v->sin_phi), out->cos_i = p.wi.z, out->area = p.area;
 }
 /* 1: accepted, by a fifth word. */
-static inline int rfl_accept(const rfl_viewer* v, const rfl_candidate* c, float target, uint32_t bits, rfl_draw* out) {
+RFL_FN int rfl_accept(const rfl_viewer* v, const rfl_candidate* c, float target, uint32_t bits, rfl_draw* out) {
   const float whole = target * c->area, t = whole / c->area;
   if (!((double)bits * 2.3283064365386963e-10 * (double)(c->majorant * v->albedo) < (double)whole)) return 0;
-  out->wi = c->wi, out->pdf = t * c->cos_i / v->albedo, out->scale = v->albedo / t;
-  return 1;
-}
-/* Both, until it is accepted; `value` then has the channels of f at out->wi. 0: no sample. */
-static inline int rfl_exact(const rfl_sampler* s, const rfl_viewer* v, rfl_function f, void* user, int channels,
-                            rfl_bits next, void* state, rfl_draw* out, float* value) {
-  rfl_candidate c;
-  uint32_t bits[4];
-  int trial, i;
-  for (trial = 0; trial < RFL_MAX_TRIALS; ++trial) {
-    for (i = 0; i < 4; ++i) bits[i] = next(state);
-    rfl_propose(s, v, bits, &c);
-    f(user, v->known, c.wi, value);
-    if (rfl_accept(v, &c, rfl_target(s, value, channels), next(state), out)) return 1;
-  }
-  return 0;
+  return out->wi = c->wi, out->pdf = t * c->cos_i / v->albedo, out->scale = v->albedo / t, 1;
 }
 /* Per solid angle, from the target at wi. */
-static inline float rfl_exact_pdf(const rfl_viewer* v, rfl_vec wi, float target) {
-  return target / v->albedo * rfl_max(wi.z, 0.f);
-}
-
+RFL_FN float rfl_exact_pdf(const rfl_viewer* v, rfl_vec wi, float t) { return t / v->albedo * rfl_max(wi.z, 0.f); }
 /* ---- Sampler files become the array. Nothing of a file is trusted; sampler_file.hpp has the format. ---- */
-
 typedef struct {
   const unsigned char *at, *end, *splits, *slope_x, *slope_y;
   uint32_t *words, *leaf, *node, count, splits_count, split, leaves, next, mass[65536], small[65536], large[65536];
@@ -406,29 +310,22 @@ typedef struct {
   const char* error;
   jmp_buf out;
 } rfl_loader;
-
-static inline void rfl_check(rfl_loader* l, int good, const char* error) {
-  if (!good) l->error = error, longjmp(l->out, 1);
+RFL_FN void rfl_check(rfl_loader* l, int good, const char* error) { if (!good) l->error = error, longjmp(l->out, 1); }
+RFL_FN const unsigned char* rfl_take(rfl_loader* l, size_t n) {
+  return rfl_check(l, n <= (size_t)(l->end - l->at), "damaged: bytes are missing"), l->at += n, l->at - n;
 }
-static inline const unsigned char* rfl_take(rfl_loader* l, size_t n) {
-  const unsigned char* at = l->at;
-  rfl_check(l, n <= (size_t)(l->end - at), "damaged: bytes are missing");
-  l->at += n;
-  return at;
-}
-static inline uint32_t rfl_uint(rfl_loader* l, size_t bytes) {
-  const unsigned char* at = rfl_take(l, bytes);
+RFL_FN uint32_t rfl_uint(rfl_loader* l, size_t n) {
+  const unsigned char* at = rfl_take(l, n);
   uint32_t v = 0;
-  while (bytes-- > 0) v = v << 8 | at[bytes];
+  while (n-- > 0) v = v << 8 | at[n];
   return v;
 }
-static inline float rfl_finite(rfl_loader* l) {
+RFL_FN float rfl_finite(rfl_loader* l) {
   const float f = rfl_float(rfl_uint(l, 4));
-  rfl_check(l, fabsf(f) <= 3.40282347e38f, "damaged: a number is not finite");
-  return f;
+  return rfl_check(l, fabsf(f) <= 3.40282347e38f, "damaged: a number is not finite"), f;
 }
 /* Of `border`, whose last becomes 2. The bits of a float index a guide, finer until no entry spans two borders. */
-static inline void rfl_put_lookup(rfl_loader* l, uint32_t n, uint32_t head) {
+RFL_FN void rfl_put_lookup(rfl_loader* l, uint32_t n, uint32_t head) {
   const uint32_t least = rfl_word(rfl_min_cos), most = rfl_word(1.f) - least, guide = l->count + n;
   uint32_t shift = 19, entry, i, before, crowded = 1;
   l->border[n - 1] = 2, l->words[head + 1] = l->count, l->words[head + 2] = guide;
@@ -442,7 +339,7 @@ static inline void rfl_put_lookup(rfl_loader* l, uint32_t n, uint32_t head) {
   l->words[head] = shift, l->words[head + 3] = l->count;
 }
 /* In preorder: the box of the next node goes from `lo` to the last split that is open. Returns the slabs. */
-static inline uint32_t rfl_partition(rfl_loader* l, uint32_t head) {
+RFL_FN uint32_t rfl_partition(rfl_loader* l, uint32_t head) {
   const char* error = "damaged: a partition that is not one of theta_o";
   const unsigned char* axis;
   uint32_t n, i, open = 0, slabs = 0;
@@ -450,52 +347,45 @@ static inline uint32_t rfl_partition(rfl_loader* l, uint32_t head) {
   rfl_check(l, rfl_uint(l, 4) == 1 && rfl_uint(l, 4) == 7 && memcmp(rfl_take(l, 7), "theta_o", 7) == 0, error);
   lo = rfl_finite(l), hi = rfl_finite(l), n = rfl_uint(l, 4), axis = rfl_take(l, n);
   rfl_check(l, lo == 0 && hi > 1.5707f && hi <= 0.5f * rfl_pi && n % 2 == 1 && n < 120000, error);
-  rfl_check(l, rfl_uint(l, 4) == n / 2, error);
-  for (i = 0; i < n; ++i) {
+  for (rfl_check(l, rfl_uint(l, 4) == n / 2, error), i = 0; i < n; ++i) {
     if (axis[i] == 255) {
-      rfl_check(l, open > 0 ? i + 1 < n : i + 1 == n, error);
-      l->border[slabs++] = cosf(lo);
+      rfl_check(l, (open > 0) == (i + 1 < n), error), l->border[slabs++] = cosf(lo);
       if (open > 0) lo = rfl_float(l->large[--open]);
-    } else {
-      split = rfl_finite(l);
-      rfl_check(l, axis[i] == 0 && split > lo && split < (open > 0 ? rfl_float(l->large[open - 1]) : hi), error);
-      l->large[open++] = rfl_word(split);
+      continue;
     }
+    split = rfl_finite(l), l->large[open++] = rfl_word(split);
+    rfl_check(l, axis[i] == 0 && split > lo && split < (open > 1 ? rfl_float(l->large[open - 2]) : hi), error);
   }
   l->border[slabs] = rfl_min_cos; /* cosines ascend */
   for (i = 0; 2 * i < slabs; ++i) lo = l->border[i], l->border[i] = l->border[slabs - i], l->border[slabs - i] = lo;
-  rfl_put_lookup(l, slabs + 1, head);
-  return slabs;
+  return rfl_put_lookup(l, slabs + 1, head), slabs;
 }
 /* A subtree in preorder, at most 15 levels deep along each axis. Returns its mass. */
-static inline double rfl_subtree(rfl_loader* l, uint32_t x, uint32_t y, uint32_t lx, uint32_t ly) {
+RFL_FN double rfl_subtree(rfl_loader* l, uint32_t x, uint32_t y, uint32_t lx, uint32_t ly) {
   const uint32_t i = l->split++, first = l->next, good = i < l->splits_count && lx < 16 && ly < 16;
   const uint32_t split = good ? (l->splits[i / 4] >> (2 * (i % 4))) & 3u : 3u, along_x = split == 1;
   uint32_t *leaf = l->leaf + RFL_LEAF * first, *node = l->node;
   double lower, upper;
   rfl_check(l, split < 3 && (split == 0 ? first < l->leaves : node < l->words + l->count), "damaged: a tree");
   if (split == 0) {
-    rfl_check(l, l->slope_x[first] != 128 && l->slope_y[first] != 128, "damaged: a slope empties an edge of its leaf");
-    leaf[2] |= x << 16, leaf[3] = y | lx << 16 | ly << 24;
-    leaf[4] = l->slope_x[first] | (uint32_t)l->slope_y[first] << 8;
+    rfl_check(l, l->slope_x[first] != 128 && l->slope_y[first] != 128, "damaged: a slope empties a leaf's edge");
+    leaf[2] |= x << 16, leaf[3] = y | lx << 16 | ly << 24, leaf[4] = l->slope_x[first] + l->slope_y[first] * 256u;
     return (double)l->mass[l->next++];
   }
   l->node += 2, lower = rfl_subtree(l, x, y, lx + along_x, ly + !along_x);
-  node[1] = (l->next - first) | along_x << 31;
-  upper = along_x ? rfl_subtree(l, x + (0x4000u >> lx), y, lx + 1, ly) : rfl_subtree(l, x, y + (0x4000u >> ly), lx, ly + 1);
-  node[0] = rfl_word((float)(lower / (lower + upper)));
+  node[1] = (l->next - first) | along_x << 31, x += along_x ? 0x4000u >> lx : 0, y += along_x ? 0 : 0x4000u >> ly;
+  upper = rfl_subtree(l, x, y, lx + along_x, ly + !along_x), node[0] = rfl_word((float)(lower / (lower + upper)));
   return lower + upper;
 }
 /* volume 0: a density. The heaviest leaf takes up what its masses lack to a multiple of their number. */
-static inline void rfl_tree(rfl_loader* l, double volume, uint32_t* slab) {
-  uint32_t i, n, m, heaviest = 0, small = 0, large = 0, last;
+RFL_FN void rfl_tree(rfl_loader* l, double volume, uint32_t* slab) {
+  uint32_t n = rfl_uint(l, 4), m, i, heaviest = 0, small = 0, large = 0, last;
   uint64_t sum = 0, bucket;
   double unit, whole = 0;
-  n = rfl_uint(l, 4), l->splits = rfl_take(l, n / 4 + (n % 4 != 0)), m = rfl_uint(l, 4);
+  l->splits = rfl_take(l, n / 4 + (n % 4 != 0)), m = rfl_uint(l, 4);
   rfl_check(l, n % 2 == 1 && m == n / 2 + 1 && m <= 65535 && l->splits[n / 4] >> (2 * (n % 4)) == 0, "damaged: a tree");
   for (i = 0; i < m; ++i) {
-    l->mass[i] = rfl_uint(l, 4), sum += l->mass[i];
-    rfl_check(l, l->mass[i] > 0 && sum <= 0xffffffffu, "damaged: a mass");
+    l->mass[i] = rfl_uint(l, 4), rfl_check(l, l->mass[i] > 0 && (sum += l->mass[i]) <= 0xffffffffu, "damaged: a mass");
     if (l->mass[i] > l->mass[heaviest]) heaviest = i;
   }
   l->slope_x = rfl_take(l, m), l->slope_y = rfl_take(l, m);
@@ -503,20 +393,15 @@ static inline void rfl_tree(rfl_loader* l, double volume, uint32_t* slab) {
   slab[0] = l->count, slab[1] = m, slab[2] = l->count + RFL_LEAF * m, slab[3] = (uint32_t)bucket;
   l->leaf = l->words + slab[0], l->node = l->words + slab[2], l->count = slab[2] + 2 * (m - 1);
   l->mass[heaviest] += (uint32_t)(bucket * m - sum);
-  for (i = 0; i < m; ++i) {
-    l->left[i] = l->mass[i];
-    if (l->left[i] < bucket) l->small[small++] = i; else l->large[large++] = i;
-  }
+  for (i = 0; i < m; ++i)
+    if ((l->left[i] = l->mass[i]) < bucket) l->small[small++] = i; else l->large[large++] = i;
   while (small > 0 && large > 0) { /* Vose 1991 */
-    i = l->small[--small], last = l->large[large - 1];
+    i = l->small[--small], last = l->large[large - 1], l->left[last] -= bucket - l->left[i];
     l->leaf[RFL_LEAF * i] = (uint32_t)l->left[i], l->leaf[RFL_LEAF * i + 2] = last;
-    l->left[last] -= bucket - l->left[i];
     if (l->left[last] < bucket) --large, l->small[small++] = last;
   }
-  while (small + large > 0) {
-    i = large > 0 ? l->large[--large] : l->small[--small];
-    l->leaf[RFL_LEAF * i] = (uint32_t)bucket, l->leaf[RFL_LEAF * i + 2] = i;
-  }
+  while (small + large > 0)
+    i = large > 0 ? l->large[--large] : l->small[--small], l->leaf[RFL_LEAF * i] = slab[3], l->leaf[RFL_LEAF * i + 2] = i;
   l->splits_count = n, l->leaves = m, l->split = l->next = 0, rfl_subtree(l, 0, 0, 0, 0);
   rfl_check(l, l->split == n && l->next == m, "damaged: a tree");
   for (i = 0; i < m; ++i) {
@@ -527,43 +412,38 @@ static inline void rfl_tree(rfl_loader* l, double volume, uint32_t* slab) {
   slab[4] = rfl_word((float)whole);
 }
 /* The payload of a chunk; 0 if there is none. */
-static inline int rfl_chunk(rfl_loader* l, const unsigned char* file, size_t size, const char* tag) {
+RFL_FN int rfl_chunk(rfl_loader* l, const unsigned char* file, size_t size, const char* tag) {
   static const char known[] = "MATL TARG DOMN EXPA EXTR ONPA ONTR ALBD PROB REPT SCAL PRCH NOTE ANIS";
   const unsigned char *from = NULL, *to = NULL, *payload;
-  l->at = file + 8, l->end = file + size - 4;
-  while (l->at < l->end) {
+  for (l->at = file + 8, l->end = file + size - 4; l->at < l->end;) {
     char name[5] = "";
-    const char* place;
-    uint32_t version, flags, length;
-    memcpy(name, rfl_take(l, 4), 4), place = strstr(known, name);
-    version = rfl_uint(l, 2), flags = rfl_uint(l, 2), length = rfl_uint(l, 4);
-    rfl_check(l, rfl_uint(l, 4) == 0, "damaged: a length"), payload = rfl_take(l, length);
-    if (version != 1 || strlen(name) != 4 || !place || (place - known) % 5 != 0) {
+    const char* place = (const char*)memcpy(name, rfl_take(l, 4), 4);
+    const uint32_t version = rfl_uint(l, 2), flags = rfl_uint(l, 2), length = rfl_uint(l, 4), high = rfl_uint(l, 4);
+    rfl_check(l, high == 0, "damaged: a length"), payload = rfl_take(l, length), place = strstr(known, name);
+    if (version != 1 || strlen(name) != 4 || !place || (place - known) % 5 != 0)
       rfl_check(l, flags & 1, "written by a later version; take its reflectree_sample.h");
-    } else if (memcmp(name, tag, 4) == 0) {
+    else if (memcmp(name, tag, 4) == 0)
       rfl_check(l, !from, "damaged: a chunk comes twice"), from = payload, to = l->at;
-    }
   }
-  l->at = from, l->end = to;
-  return from != NULL;
+  return l->at = from, l->end = to, from != NULL;
 }
-static inline void rfl_convert(rfl_loader* l, const unsigned char* file, size_t size) {
+RFL_FN void rfl_convert(rfl_loader* l, const unsigned char* file, size_t size) {
   static const char* const tags[2][2] = {{"EXPA", "EXTR"}, {"ONPA", "ONTR"}};
-  const char* error = "damaged: a chunk is missing, or too long";
-  uint32_t* w = l->words;
-  uint32_t i, k, n, slabs;
+  const char* error = "damaged: a chunk is missing, or too long, or has a number out of range";
+  uint32_t *w = l->words, i, k, n, slabs;
   float x;
-  rfl_check(l, !rfl_chunk(l, file, size, "ANIS"), "anisotropic: this file draws from isotropic samplers; use the library");
+  rfl_check(l, !rfl_chunk(l, file, size, "ANIS"), "anisotropic: only isotropic samplers are served; use the library");
   memset(w, 0, 4 * RFL_HEAD), l->count = RFL_HEAD, w[0] = RFL_MAGIC, w[1] = RFL_VERSION, w[8] = rfl_word(1.f);
   rfl_check(l, rfl_chunk(l, file, size, "TARG"), error), w[6] = rfl_uint(l, 1), w[7] = rfl_uint(l, 2);
   rfl_check(l, w[6] <= 3 && l->at == l->end && rfl_chunk(l, file, size, "DOMN"), error);
   w[3] = rfl_uint(l, 1), w[4] = rfl_uint(l, 1), x = rfl_finite(l), w[5] = rfl_word(x);
-  rfl_check(l, w[3] <= RFL_MIRROR_VECTOR + 1 && w[4] <= 1 && x >= 0 && x < 2 && l->at == l->end, "damaged: the domain");
-  if (rfl_chunk(l, file, size, "SCAL")) x = rfl_finite(l), w[8] = rfl_word(x), rfl_check(l, x > 0 && l->at == l->end, error);
+  rfl_check(l, w[3] <= RFL_MIRROR_VECTOR + 1 && w[4] <= 1 && x >= 0 && x < 2 && l->at == l->end, error);
+  if (rfl_chunk(l, file, size, "SCAL"))
+    x = rfl_finite(l), w[8] = rfl_word(x), rfl_check(l, x > 0 && l->at == l->end, error);
   rfl_check(l, rfl_chunk(l, file, size, "ALBD"), error), x = rfl_finite(l), rfl_check(l, x >= 0 && x <= 1, error);
-  n = rfl_uint(l, 4), rfl_check(l, n >= 2 && n <= 60000, "damaged: the albedo");
+  n = rfl_uint(l, 4), rfl_check(l, n >= 2 && n <= 60000, error);
   for (i = 0; i < n; ++i) l->border[i] = rfl_finite(l), rfl_check(l, i == 0 || l->border[i] > l->border[i - 1], error);
-  rfl_check(l, l->border[0] == rfl_min_cos && l->border[n - 1] == 1 && rfl_uint(l, 4) == n, "damaged: the albedo");
+  rfl_check(l, l->border[0] == rfl_min_cos && l->border[n - 1] == 1 && rfl_uint(l, 4) == n, error);
   for (i = 0; i < n; ++i) l->mass[i] = rfl_word(rfl_finite(l)), rfl_check(l, rfl_float(l->mass[i]) >= 0, error);
   rfl_check(l, l->at == l->end, error), k = l->count, l->count += 2 * (n - 1), w[RFL_ALBEDO + 3] = k;
   for (i = 0; i + 1 < n; ++i) {
@@ -576,9 +456,8 @@ static inline void rfl_convert(rfl_loader* l, const unsigned char* file, size_t 
     const uint32_t head = k ? RFL_ONE_SHOT : RFL_EXACT;
     rfl_check(l, rfl_chunk(l, file, size, tags[k][0]), error), slabs = rfl_partition(l, head);
     rfl_check(l, l->at == l->end && rfl_chunk(l, file, size, tags[k][1]) && rfl_uint(l, 4) == slabs, error);
-    for (l->count += RFL_SLAB * slabs, i = slabs; i-- > 0;) {
-      x = 0;
-      if (k == 0) rfl_check(l, rfl_uint(l, 1) <= 1, error), x = rfl_finite(l), rfl_check(l, x >= 0, error);
+    for (l->count += RFL_SLAB * slabs, i = slabs, x = 0; i-- > 0;) {
+      if (k == 0) rfl_check(l, rfl_uint(l, 1) <= 1 && (x = rfl_finite(l)) >= 0, error);
       rfl_tree(l, (double)x, w + w[head + 3] + RFL_SLAB * i);
     }
     rfl_check(l, l->at == l->end, error);
@@ -586,10 +465,10 @@ static inline void rfl_convert(rfl_loader* l, const unsigned char* file, size_t 
   w[2] = l->count;
 }
 /* Null, or what is wrong. The bytes are not needed afterwards. */
-static inline const char* rfl_load_bytes(rfl_sampler* s, const void* bytes, size_t size) {
+RFL_FN const char* rfl_load_bytes(rfl_sampler* s, const void* bytes, size_t size) {
   const unsigned char* file = (const unsigned char*)bytes;
-  const char* error = NULL;
   uint32_t crc = 0xffffffffu, bit, *words;
+  const char* error;
   rfl_loader* l;
   size_t i;
   memset(s, 0, sizeof *s);
@@ -599,27 +478,23 @@ static inline const char* rfl_load_bytes(rfl_sampler* s, const void* bytes, size
     for (crc ^= file[i], bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xedb88320u & (0u - (crc & 1u)));
   for (bit = 0; bit < 4; ++bit)
     if (file[size - 4 + bit] != ((~crc >> (8 * bit)) & 255u)) return "truncated or damaged: its checksum is wrong";
-  l = (rfl_loader*)malloc(sizeof *l), words = (uint32_t*)malloc(4 * (2 * size + 16384)); /* a file's tables at most double */
+  l = (rfl_loader*)malloc(sizeof *l), words = (uint32_t*)malloc(4 * (2 * size + 16384)); /* more than tables take */
   if (!l || !words) return free(l), free(words), "not enough memory";
   l->words = words, l->error = NULL;
   if (setjmp(l->out) == 0) rfl_convert(l, file, size), rfl_open(s, words, l->count), s->owned = words;
   error = l->error, free(l);
-  if (error) free(words);
-  return error;
+  return error ? free(words), error : NULL;
 }
-static inline const char* rfl_load(rfl_sampler* s, const char* path) {
+RFL_FN const char* rfl_load(rfl_sampler* s, const char* path) {
   FILE* file = fopen(path, "rb");
   const char* error = "no file that can be read";
   unsigned char* bytes = NULL;
-  long size;
+  long size = file && fseek(file, 0, SEEK_END) == 0 ? ftell(file) : 0;
   memset(s, 0, sizeof *s);
-  if (!file) return error;
-  if (fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) > 0 && fseek(file, 0, SEEK_SET) == 0 &&
-      size <= 268435456 && (bytes = (unsigned char*)malloc((size_t)size)) != NULL &&
-      fread(bytes, 1, (size_t)size, file) == (size_t)size)
-    error = rfl_load_bytes(s, bytes, (size_t)size);
-  free(bytes), fclose(file);
-  return error;
+  if (size > 0 && size <= 268435456 && fseek(file, 0, SEEK_SET) == 0) bytes = (unsigned char*)malloc((size_t)size);
+  if (bytes && fread(bytes, 1, (size_t)size, file) == (size_t)size) error = rfl_load_bytes(s, bytes, (size_t)size);
+  if (file) fclose(file);
+  return free(bytes), error;
 }
-static inline void rfl_free(rfl_sampler* s) { free(s->owned), memset(s, 0, sizeof *s); }
+RFL_FN void rfl_free(rfl_sampler* s) { free(s->owned), memset(s, 0, sizeof *s); }
 #endif

@@ -3,7 +3,7 @@
 
 const char* c_load(rfl_sampler* s, const void* bytes, size_t size) { return rfl_load_bytes(s, bytes, size); }
 
-int c_one_shot(const rfl_sampler* s, rfl_vec wo, rfl_bits next, void* state, rfl_draw* out) {
+int c_one_shot(const rfl_sampler* s, rfl_vec wo, c_bits next, void* state, rfl_draw* out) {
   rfl_viewer v;
   uint32_t bits[4];
   if (!rfl_view(s, wo, &v)) return 0;
@@ -19,7 +19,7 @@ int c_one_shot_uniforms(const rfl_sampler* s, rfl_vec wo, double u1, double u2, 
 
 int c_one_shot_invert(const rfl_sampler* s, rfl_vec wo, rfl_vec wi, double* u) {
   rfl_viewer v;
-  return rfl_view(s, wo, &v) && rfl_one_shot_invert(s, &v, wi, u);
+  return rfl_view(s, wo, &v) && rfl_one_shot_invert(s, &v, wi, u) > 0;
 }
 
 float c_one_shot_pdf(const rfl_sampler* s, rfl_vec wo, rfl_vec wi) {
@@ -27,7 +27,7 @@ float c_one_shot_pdf(const rfl_sampler* s, rfl_vec wo, rfl_vec wi) {
   return rfl_view(s, wo, &v) ? rfl_one_shot_pdf(s, &v, wi) : 0;
 }
 
-int c_exact(const rfl_sampler* s, rfl_vec wo, rfl_function f, void* user, int channels, rfl_bits next,
+int c_exact(const rfl_sampler* s, rfl_vec wo, c_function f, void* user, int channels, c_bits next,
             void* state, rfl_draw* out, float* value) {
   rfl_viewer v;
   rfl_candidate c;
