@@ -132,6 +132,52 @@ TEST(SampleRounds, ManyOfOneDirectionAreThoseOfTheSampler) {
   for (const auto valid : none.valid) EXPECT_EQ(valid, 0);
 }
 
+TEST(SampleRounds, AModelInLanesIsThatModel) {
+  const auto lanes = lane_function(parse_material("ggx:alpha=0.1,f0=1/0.8/0.3"));
+  const auto other = lane_function(parse_material("ggx:alpha=0.1,f0=1/0.8/0.5"));  // the twin
+  ASSERT_TRUE(lanes && other);
+  EXPECT_FALSE(lane_function(parse_material("0.5*ggx:alpha=0.1")));
+  EXPECT_FALSE(lane_function(parse_material("ggx + lambert")));
+  const std::vector<Direction> wo = many_wo(1000);
+  std::vector<Vec2<double>> points;
+  Pcg32 random(3);
+  for (std::size_t i = 0; i < wo.size(); ++i)
+    points.push_back({to_unit_double(random()), to_unit_double(random())});
+  const auto differ = [&](const LaneFunction* in_lanes, const auto& draw) {
+    Arrays a(wo.size(), 3), b(wo.size(), 3);
+    Pcg32 u(1), same(1);
+    draw(u, a.rows(), nullptr);
+    draw(same, b.rows(), in_lanes);
+    int count = 0;
+    for (std::size_t i = 0; i < wo.size(); ++i) {
+      float worst = length(a.wi[i] - b.wi[i]) + abs(float(a.valid[i]) - float(b.valid[i]));
+      worst = max(worst, abs(a.pdf[i] - b.pdf[i]) / max(a.pdf[i], 1e-30f));
+      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
+        worst = max(worst, abs(a.weight[c] - b.weight[c]) / max(a.weight[c], 1e-30f));
+      count += !(worst < 1e-5f);
+    }
+    return count;
+  };
+  const auto exact = [&](Pcg32& u, const SampleRows& out, const LaneFunction* f) {
+    sample_rounds(gold().exact, wo, points, u, out, 200, NoStatistics{}, f);
+  };
+  const auto by_alias = [&](Pcg32& u, const SampleRows& out, const LaneFunction* f) {
+    sample_rounds(gold().one_shot, wo, {}, u, out, 200, f);
+  };
+  const auto by_point = [&](Pcg32& u, const SampleRows& out, const LaneFunction* f) {
+    sample_rounds(gold().one_shot, wo, points, u, out, 200, f);
+  };
+  const auto many = [&](Pcg32& u, const SampleRows& out, const LaneFunction* f) {
+    sample_n_rounds(gold().exact, wo[0], u, out, 200, NoStatistics{}, f);
+  };
+  EXPECT_EQ(differ(lanes.get(), exact), 0);
+  EXPECT_EQ(differ(lanes.get(), by_alias), 0);
+  EXPECT_EQ(differ(lanes.get(), by_point), 0);
+  EXPECT_EQ(differ(lanes.get(), many), 0);
+  EXPECT_GT(differ(other.get(), by_alias), 800);
+  EXPECT_GT(differ(other.get(), by_point), 800);
+}
+
 TEST(SampleRounds, AFunctionIsCalledOnceARound) {
   const auto calls = std::make_shared<Calls>();
   const Sampler<AnyBrdf> sampler = make_sampler(AnyBrdf(Counted{calls}));

@@ -34,10 +34,10 @@ def _brdf_of(what: Any) -> Any:
 
 
 def _one(wo: Any) -> Array:
-    wo = as_vectors(wo, 3, "wo").astype(np.float64)
-    if wo.shape != (3,):
-        raise Error(f"its shape is {wo.shape}", "wo", "give one direction, shape (3,)")
-    return wo
+    one: Array = as_vectors(wo, 3, "wo").astype(np.float64)
+    if one.shape != (3,):
+        raise Error(f"its shape is {one.shape}", "wo", "give one direction, shape (3,)")
+    return one
 
 
 def _plane(wo: Array, n: int) -> Tuple[Array, Array]:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <type_traits>
 
 #include "reflectree/sampler/known/incidence.hpp"
 
@@ -96,7 +97,8 @@ void Rows::each(std::size_t first, std::size_t count, const Visit& visit) const 
     std::byte* at = data_;
     for (std::size_t axis = 0; axis <= last; ++axis) at += std::ptrdiff_t(index[axis]) * stride_[axis];
     const std::size_t run = std::min(count, extent_[last] - index[last]);
-    for (std::size_t k = 0; k < run; ++k, at += stride_[last]) visit(at);
+    const std::ptrdiff_t stride = stride_[last];
+    for (std::size_t k = 0; k < run; ++k, at += stride) visit(at);
     count -= run;
     index[last] = 0;
     for (std::size_t axis = last; axis-- > 0;) {
@@ -106,24 +108,52 @@ void Rows::each(std::size_t first, std::size_t count, const Visit& visit) const 
   }
 }
 
+// work(T(), width) with the type of the numbers, and with widths that occur often known at compile time.
+template <class Work>
+void Rows::specialised(const Work& work) const {
+  const auto of_width = [&]<class T>(T t) {
+    switch (width_) {
+      case 1:
+        return work(t, std::integral_constant<std::size_t, 1>());
+      case 2:
+        return work(t, std::integral_constant<std::size_t, 2>());
+      case 3:
+        return work(t, std::integral_constant<std::size_t, 3>());
+      default:
+        return work(t, width_);
+    }
+  };
+  is_float(dtype_, 32) ? of_width(float()) : of_width(double());
+}
+
 void Rows::read(std::size_t first, std::span<double> out) const {
-  double* to = out.data();
+  specialised([&]<class T>(T, auto width) {
+    double* to = out.data();
+    each(first, out.size() / width, [&](const std::byte* row) {
+      for (std::size_t k = 0; k < width; ++k) to[k] = double(load<T>(row + std::ptrdiff_t(k) * inner_));
+      to += width;
+    });
+  });
+}
+
+template <class Visit>
+void Rows::each_triple(std::size_t first, std::size_t count, const Visit& visit) const {
   const auto as = [&]<class T>(T) {
-    each(first, out.size() / width_, [&](const std::byte* row) {
-      for (std::size_t k = 0; k < width_; ++k) *to++ = double(load<T>(row + std::ptrdiff_t(k) * inner_));
+    each(first, count, [&](const std::byte* row) {
+      visit(double(load<T>(row)), double(load<T>(row + inner_)), double(load<T>(row + 2 * inner_)));
     });
   };
   is_float(dtype_, 32) ? as(float()) : as(double());
 }
 
 void Rows::write(std::size_t first, std::span<const float> values) const {
-  const float* from = values.data();
-  const auto as = [&]<class T>(T) {
-    each(first, values.size() / width_, [&](std::byte* row) {
-      for (std::size_t k = 0; k < width_; ++k) store(row + std::ptrdiff_t(k) * inner_, T(*from++));
+  specialised([&]<class T>(T, auto width) {
+    const float* from = values.data();
+    each(first, values.size() / width, [&](std::byte* row) {
+      for (std::size_t k = 0; k < width; ++k) store(row + std::ptrdiff_t(k) * inner_, T(from[k]));
+      from += width;
     });
-  };
-  is_float(dtype_, 32) ? as(float()) : as(double());
+  });
 }
 
 void Rows::write(std::size_t first, std::span<const std::uint8_t> truths) const {
@@ -132,17 +162,18 @@ void Rows::write(std::size_t first, std::span<const std::uint8_t> truths) const 
 }
 
 void read_directions(const Rows& rows, std::size_t first, std::span<Direction> out) {
-  std::vector<double> numbers(3 * out.size());
-  rows.read(first, numbers);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const double *w = &numbers[3 * i], squared = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+  Direction* to = out.data();
+  rows.each_triple(first, out.size(), [&](double x, double y, double z) {
+    const double squared = x * x + y * y + z * z;
     if (!(std::abs(squared - 1) <= double(unit_length_tolerance))) {
-      throw Error(text_of({w, 3}) + (std::isfinite(squared) ? " is not of unit length" : " is no direction"),
-                  rows.place(first + i),
-                  std::isfinite(squared) ? "divide it by its length" : "leave such rows out");
+      const double w[] = {x, y, z};
+      const bool finite = std::isfinite(squared);
+      throw Error(text_of(w) + (finite ? " is not of unit length" : " is no direction"),
+                  rows.place(first + std::size_t(to - out.data())),
+                  finite ? "divide it by its length" : "leave such rows out");
     }
-    out[i] = {float(w[0]), float(w[1]), float(w[2])};
-  }
+    *to++ = {float(x), float(y), float(z)};
+  });
 }
 
 void read_points(const Rows& rows, std::size_t first, std::span<Vec2<double>> out) {

@@ -34,6 +34,9 @@ class Rows {
   // Of row i as Python indexes it: "wo[2, 5]"; "wo" where there is but one.
   std::string place(std::size_t i) const;
 
+  // visit(x, y, z) for rows of three numbers; in arrays.cpp alone.
+  template <class Visit>
+  void each_triple(std::size_t first, std::size_t count, const Visit& visit) const;
   // Rows [first, first + out.size() / width), one after the other.
   void read(std::size_t first, std::span<double> out) const;
   void write(std::size_t first, std::span<const float> values) const;
@@ -42,6 +45,8 @@ class Rows {
  private:
   Rows(void* data, std::size_t ndim, const std::int64_t* shape, const std::int64_t* strides,
        nb::dlpack::dtype dtype, std::size_t width, std::string name);
+  template <class Work>
+  void specialised(const Work& work) const;
   template <class Visit>
   void each(std::size_t first, std::size_t count, const Visit& visit) const;
 

@@ -38,7 +38,10 @@ void bind_brdf(nb::module_& m) {
           "from_text",
           [](const std::string& text, const std::string& beside) {
             const nb::gil_scoped_release no_gil;
-            return PyBrdf{open_brdf(text, FilePlaces{"", beside})};
+            const FilePlaces places{"", beside};
+            PyBrdf brdf{open_brdf(text, places)};
+            if (!names_sampler_file(text, places)) brdf.lanes = lane_function(parse_material(text, places));
+            return brdf;
           },
           nb::arg("text"), nb::arg("beside"))
       .def_static(

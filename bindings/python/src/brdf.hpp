@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "python_brdf.hpp"
+#include "reflectree/simd/lane_function.hpp"
 
 namespace reflectree::python {
 
@@ -13,10 +14,11 @@ struct PyBrdf {
   AnyBrdf f;
   std::optional<PythonBrdf> function = std::nullopt;  // where it is one of Python
   FunctionOwner owner = {};
+  std::shared_ptr<const LaneFunction> lanes = nullptr;  // where it is one model
 
   // Directions per call, and per piece of a long call. A function of Python wants few calls.
   std::size_t batch() const { return function ? python_batch : 512; }
-  std::size_t piece() const { return function ? 4 * python_batch : 4096; }
+  std::size_t piece() const { return function ? 4 * python_batch : 1024; }
 };
 
 // Tells the garbage collector what an object of type T refers to; owner_of(T&).

@@ -73,6 +73,7 @@ void sample_into(const PySampler& s, bool one_shot, const Input& wo, const std::
   std::optional<Rows> points;
   if (u) points.emplace(*u, 2, "u");
   Pcg32 random(seed, stream);
+  const LaneFunction* lanes = s.brdf.lanes.get();
   std::vector<Direction> directions;
   std::vector<Vec2<double>> uniforms;
   in_pieces(out.size(), s.brdf.piece(), [&](std::size_t first, std::size_t count) {
@@ -81,9 +82,10 @@ void sample_into(const PySampler& s, bool one_shot, const Input& wo, const std::
     if (points) uniforms.resize(count), read_points(*points, first, uniforms);
     const SampleRows rows = out.buffers(count);
     if (one_shot) {
-      sample_rounds(s.sampler.one_shot, directions, uniforms, random, rows, s.brdf.batch());
+      sample_rounds(s.sampler.one_shot, directions, uniforms, random, rows, s.brdf.batch(), lanes);
     } else {
-      sample_rounds(s.sampler.exact, directions, uniforms, random, rows, s.brdf.batch());
+      sample_rounds(s.sampler.exact, directions, uniforms, random, rows, s.brdf.batch(), NoStatistics{},
+                    lanes);
     }
     out.write(first);
   });
@@ -98,14 +100,15 @@ void sample_n_into(const PySampler& s, bool one_shot, const Input& wo, std::uint
   if (out.size() == 0) return;
   const std::size_t n = out.size() / wo_rows.size();
   Pcg32 random(seed, stream);
+  const LaneFunction* lanes = s.brdf.lanes.get();
   in_pieces(wo_rows.size(), 1, [&](std::size_t i, std::size_t) {
     Direction direction;
     read_directions(wo_rows, i, {&direction, 1});
     const SampleRows rows = out.buffers(n);
     if (one_shot) {
-      sample_n_rounds(s.sampler.one_shot, direction, random, rows, s.brdf.batch());
+      sample_n_rounds(s.sampler.one_shot, direction, random, rows, s.brdf.batch(), lanes);
     } else {
-      sample_n_rounds(s.sampler.exact, direction, random, rows, s.brdf.batch());
+      sample_n_rounds(s.sampler.exact, direction, random, rows, s.brdf.batch(), NoStatistics{}, lanes);
     }
     out.write(i * n);
   });

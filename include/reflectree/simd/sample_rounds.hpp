@@ -8,6 +8,9 @@
 //   sample_rounds(sampler.one_shot, wo, points, random, out);    // by monotone descent
 //   sample_n_rounds(sampler.exact, wo, random, out);             // many of one wo, divided among the leaves
 //
+// `lanes`: the formula of sampler.brdf() where it is a model's (lane_function.hpp); f is then not called, and
+// the values are the same.
+//
 // Densities are those of the one-by-one calls. "No sample" is zeros in every array. What f throws is passed
 // on; `out` is then unspecified.
 #pragma once
@@ -15,6 +18,7 @@
 #include <algorithm>
 
 #include "reflectree/math/uniform_bits.hpp"
+#include "reflectree/simd/lane_function.hpp"
 #include "reflectree/simd/sample_batch.hpp"
 
 namespace reflectree {
@@ -32,14 +36,19 @@ namespace detail {
 // Blocks of trials whose function is called once. Trial k of the round is lane j of a block.
 class TrialRound {
  public:
-  TrialRound(const AnyBrdf& f, const PackedSampler& packed, bool evaluates_turned, std::size_t trials)
+  TrialRound(const AnyBrdf& f, const PackedSampler& packed, bool evaluates_turned, std::size_t trials,
+             const LaneFunction* lanes)
       : f_(f),
+        lanes_(lanes),
         packed_(packed),
         channels_(std::size_t(f.channels())),
         blocks_((std::max<std::size_t>(trials, 1) + block_size - 1) / block_size,
                 TrialBlock(evaluates_turned, !packed.viewer.frame.isotropic())),
-        geometry_(blocks_.size() * block_size),
-        values_(geometry_.size() * channels_) {}
+        geometry_(lanes ? 0 : blocks_.size() * block_size),
+        values_(blocks_.size() * block_size * channels_),
+        targets_(lanes ? blocks_.size() * block_size : 0),
+        trial_stride_(lanes ? 1 : channels_),
+        channel_stride_(lanes ? blocks_.size() * block_size : 1) {}
 
   void clear() {
     for (std::size_t b = 0; b <= last_; ++b) blocks_[b].count = 0;
@@ -55,24 +64,28 @@ class TrialRound {
   }
 
   template <AcrossX across_x>
-  void compute(const Domain& domain) {
-    first_ = 0;
-    for (std::size_t b = 0; b <= last_; ++b) {
-      compute_points<across_x>(domain, blocks_[b], *this);
-      first_ += blocks_[b].count;
-    }
-    f_.eval({geometry_.data(), first_}, {values_.data(), first_ * channels_});
+  void compute() {
+    with_known_kind(packed_.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+      first_ = 0;
+      for (std::size_t b = 0; b <= last_; ++b) {
+        compute_points<across_x>(domain, blocks_[b], *this);
+        first_ += places_of(blocks_[b]);
+      }
+    });
+    if (!lanes_) f_.eval({geometry_.data(), first_}, {values_.data(), first_ * channels_});
   }
   // visit(block, j, k) for every trial, in the order in which they were added.
   template <class Visit>
   REFLECTREE_INLINE void for_each(const Visit& visit) {
     std::size_t k = 0;
-    for (std::size_t b = 0; b <= last_; ++b) {
-      for (std::size_t j = 0; j < blocks_[b].count; ++j) visit(blocks_[b], j, k++);
+    for (std::size_t b = 0; b <= last_; k += places_of(blocks_[b]), ++b) {
+      for (std::size_t j = 0; j < blocks_[b].count; ++j) visit(blocks_[b], j, k + j);
     }
   }
 
-  float target(std::size_t k) const { return packed_.target(&values_[k * channels_], int(channels_)); }
+  float target(std::size_t k) const {
+    return lanes_ ? targets_[k] : packed_.target(&values_[k * channels_], int(channels_));
+  }
   // Direction, pdf and weight of a trial.
   void store(const TrialBlock& b, std::size_t j, std::size_t k, float pdf, float scale, const SampleRows& out,
              std::size_t i) const {
@@ -80,7 +93,7 @@ class TrialRound {
     out.wi[i] = {b.at[Field::wi_x][j], b.at[Field::wi_y][j], b.at[Field::wi_z][j]};
     out.pdf[i] = pdf;
     for (std::size_t c = 0; c < channels_; ++c)
-      out.weight[i * channels_ + c] = scale * values_[k * channels_ + c];
+      out.weight[i * channels_ + c] = scale * values_[k * trial_stride_ + c * channel_stride_];
     out.valid[i] = 1;
   }
   void store_none(const SampleRows& out, std::size_t i) const {
@@ -99,17 +112,36 @@ class TrialRound {
 
   // Called by compute_points; the copies that fill the last lanes are overwritten by the next block.
   REFLECTREE_INLINE void evaluate(std::size_t k, const ShadingGeometry<Lanes>& g) {
+    if (lanes_) return evaluate(first_ + k, (*lanes_)(g));
     for (std::size_t i = 0; i < lane_count; ++i) geometry_[first_ + k + i] = lane_of(g, i);
   }
   void finish(std::size_t) {}
 
  private:
+  // Of a block in geometry_ and values_: lanes keep to blocks, an erased call wants no gaps.
+  std::size_t places_of(const TrialBlock& b) const { return lanes_ ? block_size : b.count; }
+
+  REFLECTREE_INLINE void evaluate(std::size_t k, const RgbT<Lanes>& v) {
+    float* channel = &values_[k];
+    v.r.store(channel);
+    v.g.store(channel + channel_stride_);
+    v.b.store(channel + 2 * channel_stride_);
+    if (packed_.target.kind == TargetKind::norm) {
+      Target::norm(Lanes(packed_.target.scale) * v).store(&targets_[k]);
+    } else {
+      for (std::size_t i = 0; i < lane_count; ++i)
+        targets_[k + i] = packed_.target(Rgb{v.r[i], v.g[i], v.b[i]});
+    }
+  }
+
   const AnyBrdf& f_;
+  const LaneFunction* lanes_;
   const PackedSampler& packed_;
   std::size_t channels_, last_ = 0, first_ = 0;
   std::vector<TrialBlock> blocks_;
   std::vector<ShadingGeometry<float>> geometry_;
-  std::vector<float> values_;
+  std::vector<float> values_, targets_;
+  std::size_t trial_stride_, channel_stride_;  // of values_
 };
 
 // Trial k of exact mode: whether it is accepted, and then what it is.
@@ -133,13 +165,14 @@ REFLECTREE_INLINE bool accept(const TrialRound& round, const TrialBlock& b, std:
 template <RandomBits U, class Stats = NoStatistics>
 void sample_rounds(const ExactSampler<AnyBrdf>& sampler, std::span<const Direction> wo,
                    std::span<const Vec2<double>> points, U& u, const SampleRows& out,
-                   std::size_t trials_per_round = 512, Stats&& stats = {}) {
+                   std::size_t trials_per_round = 512, Stats&& stats = {},
+                   const LaneFunction* lanes = nullptr) {
   assert(points.empty() || points.size() == wo.size());
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
   const Domain& domain = packed.domain;
   detail::TrialRound round(sampler.brdf(), packed, sampler.evaluates_turned(),
-                           std::min(trials_per_round, wo.size()));
+                           std::min(trials_per_round, wo.size()), lanes);
   struct Pending {
     Incidence in;
     const PackedSlab* slab;
@@ -174,7 +207,7 @@ void sample_rounds(const ExactSampler<AnyBrdf>& sampler, std::span<const Directi
       if (!add(p)) break;
       pending.push_back(p);
     }
-    round.compute<detail::AcrossX::place>(domain);
+    round.compute<detail::AcrossX::place>();
     std::size_t rejected = 0;
     round.for_each([&](detail::TrialBlock& b, std::size_t j, std::size_t k) {
       Pending& p = pending[k];
@@ -194,12 +227,12 @@ void sample_rounds(const ExactSampler<AnyBrdf>& sampler, std::span<const Directi
 template <RandomBits U>
 void sample_rounds(const OneShotSampler<AnyBrdf>& sampler, std::span<const Direction> wo,
                    std::span<const Vec2<double>> points, U& u, const SampleRows& out,
-                   std::size_t trials_per_round = 512) {
+                   std::size_t trials_per_round = 512, const LaneFunction* lanes = nullptr) {
   assert(points.empty() || points.size() == wo.size());
   const PackedSampler& packed = sampler.packed();
   const Domain& domain = packed.domain;
   detail::TrialRound round(sampler.brdf(), packed, sampler.evaluates_turned(),
-                           std::min(trials_per_round, wo.size()));
+                           std::min(trials_per_round, wo.size()), lanes);
   const auto no_sample = [&](std::size_t i) { round.store_none(out, i); };
   const auto place_of = [](const detail::TrialBlock& b, std::size_t j) { return std::size_t(b.index[j]); };
   for (std::size_t i = 0; i < wo.size();) {
@@ -207,11 +240,11 @@ void sample_rounds(const OneShotSampler<AnyBrdf>& sampler, std::span<const Direc
     if (points.empty()) {
       for (detail::TrialBlock* b; i < wo.size() && (b = round.room_for(1));)
         detail::add_by_alias(packed, domain, wo, i, u, *b, no_sample);
-      round.compute<detail::AcrossX::place>(domain);
+      round.compute<detail::AcrossX::place>();
     } else {
       for (detail::TrialBlock* b; i < wo.size() && (b = round.room_for(detail::descents_side_by_side));)
         detail::add_by_descent(packed, domain, wo, points, i, *b, no_sample);
-      round.compute<detail::AcrossX::uniform>(domain);
+      round.compute<detail::AcrossX::uniform>();
     }
     round.store_one_shot(out, place_of);
   }
@@ -221,18 +254,20 @@ void sample_rounds(const OneShotSampler<AnyBrdf>& sampler, std::span<const Direc
 // how many places were filled; the others are "no sample".
 template <RandomBits U, class Stats = NoStatistics>
 std::size_t sample_n_rounds(const ExactSampler<AnyBrdf>& sampler, Direction wo, U& u, const SampleRows& out,
-                            std::size_t trials_per_round = 512, Stats&& stats = {}) {
+                            std::size_t trials_per_round = 512, Stats&& stats = {},
+                            const LaneFunction* lanes = nullptr) {
   using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
   const Domain& domain = packed.domain;
   const std::size_t n = out.wi.size();
-  detail::TrialRound round(sampler.brdf(), packed, sampler.evaluates_turned(), std::min(trials_per_round, n));
+  detail::TrialRound round(sampler.brdf(), packed, sampler.evaluates_turned(), std::min(trials_per_round, n),
+                           lanes);
   std::size_t filled = 0;
   Incidence in;
   if (n > 0 && find_incidence(packed.viewer, wo, in)) {
     const PackedSlab& slab = packed.exact.slab_at(in);
     const auto flush = [&] {
-      round.compute<detail::AcrossX::place>(domain);
+      round.compute<detail::AcrossX::place>();
       round.for_each([&](detail::TrialBlock& b, std::size_t j, std::size_t k) {
         filled += detail::accept(round, b, j, k, in.albedo, out, filled, stats);
       });
@@ -257,17 +292,18 @@ std::size_t sample_n_rounds(const ExactSampler<AnyBrdf>& sampler, Direction wo, 
 // One-shot mode likewise; all places are filled or, for "no sample", none.
 template <RandomBits U>
 std::size_t sample_n_rounds(const OneShotSampler<AnyBrdf>& sampler, Direction wo, U& u, const SampleRows& out,
-                            std::size_t trials_per_round = 512) {
+                            std::size_t trials_per_round = 512, const LaneFunction* lanes = nullptr) {
   const PackedSampler& packed = sampler.packed();
   const Domain& domain = packed.domain;
   const std::size_t n = out.wi.size();
-  detail::TrialRound round(sampler.brdf(), packed, sampler.evaluates_turned(), std::min(trials_per_round, n));
+  detail::TrialRound round(sampler.brdf(), packed, sampler.evaluates_turned(), std::min(trials_per_round, n),
+                           lanes);
   std::size_t filled = 0;
   Incidence in;
   if (n > 0 && find_incidence(packed.viewer, wo, in)) {
     const PackedSlab& slab = packed.one_shot.slab_at(in);
     const auto flush = [&] {
-      round.compute<detail::AcrossX::place>(domain);
+      round.compute<detail::AcrossX::place>();
       round.store_one_shot(out, [&](const detail::TrialBlock&, std::size_t) { return filled++; });
       round.clear();
     };
