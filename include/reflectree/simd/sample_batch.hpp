@@ -39,16 +39,79 @@ REFLECTREE_INLINE void store_sample(const TrialBlock& b, const Values& values, s
          sample_reflection};
 }
 
-template <AcrossX across_x, class Values, class Value>
-REFLECTREE_INLINE void finish_one_shot(const Domain& domain, TrialBlock& b, Values& values,
-                                       std::span<DirectionSample<Value>> out) {
+// Fills a block with the next directions from i on, each in a leaf chosen by alias table; no_sample(i) where
+// there is none.
+template <RandomBits U, class NoSample>
+REFLECTREE_INLINE void add_by_alias(const PackedSampler& packed, const Domain& domain,
+                                    std::span<const Direction> wo, std::size_t& i, U& u, TrialBlock& block,
+                                    const NoSample& no_sample) {
+  for (; i < wo.size() && !block.full(); ++i) {
+    Incidence in;
+    if (!find_incidence(packed.viewer, wo[i], in)) {
+      no_sample(i);
+      continue;
+    }
+    const PackedSlab& slab = packed.one_shot.slab_at(in);
+    const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
+    block.add(i, in, choose_leaf(slab, leaves, bits64(u)), domain.half(), u);
+  }
+}
+
+inline constexpr std::size_t descents_side_by_side = 8;
+// The same by monotone descent from points of [0, 1]^2.
+template <class NoSample>
+REFLECTREE_INLINE void add_by_descent(const PackedSampler& packed, const Domain& domain,
+                                      std::span<const Direction> wo, std::span<const Vec2<double>> points,
+                                      std::size_t& i, TrialBlock& block, const NoSample& no_sample) {
   using Field = TrialBlock::Field;
-  compute_points<across_x>(domain, b, values);
+  const bool half = domain.half();
+  struct Started {
+    Incidence in;
+    std::size_t i;
+    float turn;
+  };
+  while (i < wo.size() && block.count + descents_side_by_side <= block_size) {
+    Descent descents[descents_side_by_side];
+    Started started[descents_side_by_side];
+    std::size_t n = 0;
+    for (; i < wo.size() && n < descents_side_by_side; ++i) {
+      Started& s = started[n];
+      if (!are_uniforms(points[i].x, points[i].y) || !find_incidence(packed.viewer, wo[i], s.in)) {
+        no_sample(i);
+        continue;
+      }
+      // Folded continuously across the plane of incidence.
+      const bool below = half && points[i].y < 0.5;
+      const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
+      s.i = i;
+      s.turn = below ? -0.f : 0.f;
+      descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in), points[i].x, u2);
+    }
+    descend(descents, n);
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t k = block.add(started[j].i, started[j].in, *descents[j].leaf, half);
+      block.at[Field::across_x][k] = descents[j].across(0);
+      block.at[Field::across_y][k] = descents[j].across(1);
+      block.at[Field::turn][k] = started[j].turn;
+    }
+  }
+}
+
+// pdf and the factor from f to the weight.
+REFLECTREE_INLINE void set_one_shot(TrialBlock& b) {
+  using Field = TrialBlock::Field;
   for (std::size_t k = 0; k < b.count; k += lane_count) {
     const Lanes area = b.lanes(Field::projected_area, k), density = b.lanes(Field::majorant, k);
     b.set(Field::pdf, k, density / area * b.lanes(Field::wi_z, k));
     b.set(Field::scale, k, area / density);
   }
+}
+
+template <AcrossX across_x, class Values, class Value>
+REFLECTREE_INLINE void finish_one_shot(const Domain& domain, TrialBlock& b, Values& values,
+                                       std::span<DirectionSample<Value>> out) {
+  compute_points<across_x>(domain, b, values);
+  set_one_shot(b);
   for (std::size_t k = 0; k < b.count; ++k) store_sample(b, values, k, out[b.index[k]]);
 }
 
@@ -62,19 +125,11 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   const PackedSampler& packed = sampler.packed();
   detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
+  const auto no_sample = [&](std::size_t i) { detail::store_no_sample(values.zero(), out[i]); };
   with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
     for (std::size_t i = 0; i < wo.size();) {
       block.count = 0;
-      for (; i < wo.size() && !block.full(); ++i) {
-        Incidence in;
-        if (!find_incidence(packed.viewer, wo[i], in)) {
-          detail::store_no_sample(values.zero(), out[i]);
-          continue;
-        }
-        const PackedSlab& slab = packed.one_shot.slab_at(in);
-        const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
-        block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half(), u);
-      }
+      detail::add_by_alias(packed, domain, wo, i, u, block, no_sample);
       detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
     }
   });
@@ -85,46 +140,14 @@ template <Brdf F>
 void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> wo,
                   std::span<const Vec2<double>> points, std::span<DirectionSample<ValueOf<F>>> out) {
   assert(points.size() == wo.size() && out.size() == wo.size());
-  using Field = detail::TrialBlock::Field;
   const PackedSampler& packed = sampler.packed();
-  const bool half = packed.domain.half();
   detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
-  constexpr std::size_t side_by_side = 8;
-  struct Started {
-    Incidence in;
-    std::size_t i;
-    float turn;
-  };
+  const auto no_sample = [&](std::size_t i) { detail::store_no_sample(values.zero(), out[i]); };
   with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
     for (std::size_t i = 0; i < wo.size();) {
       block.count = 0;
-      while (i < wo.size() && block.count + side_by_side <= detail::block_size) {
-        detail::Descent descents[side_by_side];
-        Started started[side_by_side];
-        std::size_t n = 0;
-        for (; i < wo.size() && n < side_by_side; ++i) {
-          Started& s = started[n];
-          if (!detail::are_uniforms(points[i].x, points[i].y) ||
-              !find_incidence(packed.viewer, wo[i], s.in)) {
-            detail::store_no_sample(values.zero(), out[i]);
-            continue;
-          }
-          // Folded continuously across the plane of incidence.
-          const bool below = half && points[i].y < 0.5;
-          const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
-          s.i = i;
-          s.turn = below ? -0.f : 0.f;
-          descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in), points[i].x, u2);
-        }
-        detail::descend(descents, n);
-        for (std::size_t j = 0; j < n; ++j) {
-          const std::size_t k = block.add(started[j].i, started[j].in, *descents[j].leaf, half);
-          block.at[Field::across_x][k] = descents[j].across(0);
-          block.at[Field::across_y][k] = descents[j].across(1);
-          block.at[Field::turn][k] = started[j].turn;
-        }
-      }
+      detail::add_by_descent(packed, domain, wo, points, i, block, no_sample);
       detail::finish_one_shot<detail::AcrossX::uniform>(domain, block, values, out);
     }
   });

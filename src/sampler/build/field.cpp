@@ -14,7 +14,9 @@ namespace reflectree::detail {
 
 namespace {
 
-constexpr std::size_t block = 512;  // points evaluated by one call
+// Points evaluated by one call. A function that is called from one thread may be one of another language,
+// whose calls are dear.
+constexpr std::size_t block = 512, large_block = 65536;
 
 struct Turn {
   float cosine = 1, sine = 0;
@@ -64,10 +66,11 @@ Direction Field::direction_at(const FieldPoint& point) const {
 void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
   const int channels = f.channels();
   const std::size_t images = both_sides ? 2 : 1;
-  std::vector<ShadingGeometry<float>> geometry(block * images);
-  std::vector<float> values(geometry.size() * std::size_t(channels)), area(block);
-  for (std::size_t begin = 0; begin < points.size(); begin += block) {
-    const std::size_t end = std::min(points.size(), begin + block);
+  const std::size_t most = std::min(points.size(), f.traits().concurrent ? block : large_block);
+  std::vector<ShadingGeometry<float>> geometry(most * images);
+  std::vector<float> values(geometry.size() * std::size_t(channels)), area(most);
+  for (std::size_t begin = 0; begin < points.size(); begin += most) {
+    const std::size_t end = std::min(points.size(), begin + most);
     const std::size_t count = end - begin;
     for (std::size_t k = 0; k < count; ++k) {
       const FieldPoint& point = points[begin + k];

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+from ._arrays import Array
+
+version: str
+unnamed: str
+
+def list_members(path: str) -> List[str]: ...
+def model_names() -> List[str]: ...
+def sampler_file_material(path: str) -> str: ...
+
+class Brdf:
+    name: str
+    channels: int
+    has_channel_axis: bool
+    calls: Tuple[int, int]
+    @staticmethod
+    def from_text(text: str, beside: str) -> Brdf: ...
+    @staticmethod
+    def from_file(path: str, member: str) -> Brdf: ...
+    @staticmethod
+    def from_function(function: Any, name: str, double_precision: bool) -> Brdf: ...
+    def eval(self, wo: Array, wi: Array, out: Array, cosine: bool) -> None: ...
+
+class Sampler:
+    report: Dict[str, Any]
+    material: str
+    domain: str
+    half_square: bool
+    isotropic: bool
+    nbytes: int
+    slabs: Tuple[int, int]
+    leaf_counts: Tuple[int, int]
+    @staticmethod
+    def build(
+        brdf: Brdf,
+        *,
+        target: str,
+        channel: int,
+        expected_trials: float,
+        one_shot_variance: float,
+        albedo_error: float,
+        seed: int,
+        max_evaluations: int,
+        threads: int,
+        progress: Optional[Callable[[float, str], Any]],
+    ) -> Sampler: ...
+    @staticmethod
+    def from_bytes(brdf: Brdf, bytes: bytes, where: str) -> Sampler: ...
+    @staticmethod
+    def from_file(brdf: Brdf, path: str) -> Sampler: ...
+    def to_bytes(self) -> bytes: ...
+    def save(self, path: str) -> None: ...
+    def sample(
+        self,
+        one_shot: bool,
+        wo: Array,
+        u: Optional[Array],
+        seed: int,
+        stream: int,
+        wi: Array,
+        pdf: Array,
+        weight: Array,
+        valid: Array,
+    ) -> None: ...
+    def sample_n(
+        self,
+        one_shot: bool,
+        wo: Array,
+        seed: int,
+        stream: int,
+        wi: Array,
+        pdf: Array,
+        weight: Array,
+        valid: Array,
+    ) -> None: ...
+    def eval_pdf(
+        self,
+        one_shot: bool,
+        wo: Array,
+        wi: Array,
+        f: Optional[Array],
+        pdf: Optional[Array],
+        cosine: bool,
+    ) -> None: ...
+    def invert(self, wo: Array, wi: Array, out: Array) -> None: ...
+    def albedo(self, wo: Array, out: Array) -> None: ...
+    def expected_trials(self, wo: Array, out: Array) -> None: ...
+    def leaves(self, one_shot: bool, x: float, y: float, z: float) -> List[Any]: ...
