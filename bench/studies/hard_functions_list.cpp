@@ -282,14 +282,26 @@ void add_values(std::vector<HardFunction>& list) {
                          [](Direction, Direction i) { return Spectrum(i.z < 0.2f ? 2 : 3); }));
 }
 
-void add_manners(std::vector<HardFunction>& list) {
-  list.push_back(refused("bright azimuth", "1.3 times brighter within 3 degrees of one azimuth",
-                         [](Direction, Direction i) {
-                           return 0.2f * (std::abs(std::atan2(i.y, i.x) - 1) < 3 * degree ? 1.3f : 1.f);
-                         }));
-  list.push_back(refused("cos 2 phi", "1.5 % of cos 2 phi", [](Direction, Direction i) {
+bool is_near_one_radian(Direction w, float degrees) {
+  return std::abs(std::remainder(std::atan2(w.y, w.x) - 1, 2 * pi)) < degrees * degree;
+}
+
+void add_azimuths(std::vector<HardFunction>& list) {
+  list.push_back(of("bright azimuth", "1.3 times brighter for wi within 3 degrees of one azimuth",
+                    [](Direction, Direction i) { return is_near_one_radian(i, 3) ? 0.26f : 0.2f; }));
+  list.push_back(of("bright viewers", "the same for wo",
+                    [](Direction o, Direction) { return is_near_one_radian(o, 3) ? 0.26f : 0.2f; }));
+  list.push_back(of("few viewers", "the same within half a degree",
+                    [](Direction o, Direction) { return is_near_one_radian(o, 0.5f) ? 0.26f : 0.2f; }));
+  list.push_back(of("cos 2 phi", "1.5 % of cos 2 phi", [](Direction, Direction i) {
     return 0.2f * (1 + 0.015f * std::cos(2 * std::atan2(i.y, i.x)));
   }));
+  list.push_back(of("cos 16 phi", "16 periods of the viewer's azimuth", [](Direction o, Direction) {
+    return 0.2f * (1 + 0.3f * std::cos(16 * std::atan2(o.y, o.x)) * (o.x * o.x + o.y * o.y));
+  }));
+}
+
+void add_manners(std::vector<HardFunction>& list) {
   list.push_back(of("slow", "2 microseconds per call", [](Direction o, Direction i) {
     double sum = 0;
     for (int k = 1; k < 200; ++k) sum += std::sin(double(k) * double(i.z)) / k;
@@ -317,6 +329,7 @@ std::vector<HardFunction> hard_functions() {
   add_steps(list);
   add_scales(list);
   add_values(list);
+  add_azimuths(list);
   add_manners(list);
   return list;
 }
