@@ -15,9 +15,10 @@ float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs
 
 PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
     : on(interaction_at(scene, hit, origin, direction)),
-      frame(frame_from_normal(on.shading)),
-      wo(to_local(frame, -direction)),
-      surface(&scene.surfaces[on.surface]) {}
+      surface(&scene.surfaces[on.surface]),
+      frame(surface->scattering->follows_texture() ? frame_along(on.shading, tangents_at(scene, hit, on).du)
+                                                   : frame_from_normal(on.shading)),
+      wo(to_local(frame, -direction)) {}
 
 Scattering::Value PathVertex::value(Direction wi) const {
   const InPhase evaluating(Phase::eval);

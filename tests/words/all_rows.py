@@ -7,8 +7,9 @@ import pathlib
 import rows_numbers
 import rows_pixels
 import rows_shapes
+import rows_tangents
 
-ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS]
+ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS, *rows_tangents.ROWS]
 STORED = pathlib.Path(__file__).resolve().parent / "mitsuba.json"
 
 

@@ -32,9 +32,9 @@ inline float heuristic(Technique technique, float own, float other) {
 struct PathVertex {
   PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction);
   Interaction on;
-  LocalFrame<float> frame;
-  Direction wo;
   const Surface* surface;
+  LocalFrame<float> frame;  // its x follows u where the material asks for that
+  Direction wo;
   const Scattering& scattering() const { return *surface->scattering; }
   // What its material says, booked for --profile.
   Scattering::Value value(Direction wi) const;

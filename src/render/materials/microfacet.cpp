@@ -26,12 +26,16 @@ Direction visible_ggx(Direction v, float u1, float u2) {
 }  // namespace
 
 Microfacets::Microfacets(Roughness roughness) : roughness_(roughness) {
-  roughness_.alpha = max(roughness_.alpha, 1e-4f);
+  roughness_.alpha = {max(roughness_.alpha.x, 1e-4f), max(roughness_.alpha.y, 1e-4f)};
 }
 
 float Microfacets::d(Direction wh) const {
   if (!(wh.z > 0)) return 0;
-  const float alpha = roughness_.alpha;
+  const float alpha = roughness_.alpha.x;
+  if (!roughness_.alpha.round()) {
+    return roughness_.kind == Roughness::Kind::ggx ? ggx_distribution(wh, roughness_.alpha)
+                                                   : beckmann_distribution(wh, roughness_.alpha);
+  }
   if (roughness_.kind == Roughness::Kind::ggx) return ggx_distribution(wh, alpha);
   if (sin2_theta(wh) > 80 * sqr(alpha * wh.z)) return 0;  // spares the underflow
   return beckmann_distribution(wh, alpha, exp_of_negative);
@@ -39,10 +43,15 @@ float Microfacets::d(Direction wh) const {
 
 float Microfacets::g1(Direction w) const {
   if (!(w.z > 0)) return 0;
-  const float alpha = roughness_.alpha;
-  if (roughness_.kind == Roughness::Kind::ggx) return ggx_masking(w, alpha);
+  const float alpha = roughness_.alpha.x;
+  // alpha^2 sin^2 theta, with two widths
+  const auto widened = [&] { return sqr(alpha * w.x) + sqr(roughness_.alpha.y * w.y); };
+  const bool round = roughness_.alpha.round();
+  if (roughness_.kind == Roughness::Kind::ggx)
+    return round ? ggx_masking(w, alpha) : 2 / (1 + std::sqrt(1 + widened() / sqr(w.z)));
   // 2 / (1 + erf a + exp(-a^2) / (a sqrt pi)) of a = over / under; 1 where a > 5
-  const float over = w.z, under = alpha * std::sqrt(sin2_theta(w)), a = over / under;
+  const float over = w.z, under = round ? alpha * std::sqrt(sin2_theta(w)) : std::sqrt(widened()),
+              a = over / under;
   if (over > 5 * under) return 1;
   return 2 / (2 + exp_of_negative(-a * a) * (inverse_root_pi * (under / over) - scaled_erfc(over, under)));
 }
@@ -52,24 +61,23 @@ float Microfacets::pdf(Direction wo, Direction wh, float d, float g1_o) const {
 }
 
 Direction Microfacets::sample(Direction wo, float u1, float u2) const {
-  const float alpha = roughness_.alpha;
+  const auto [alpha_x, alpha_y] = roughness_.alpha;
   const bool ggx = roughness_.kind == Roughness::Kind::ggx;
   if (!roughness_.sample_visible) {
-    const float tan2 = alpha * alpha * (ggx ? u1 / (1 - u1) : -std::log(1 - u1));
-    const float c = 1 / std::sqrt(1 + tan2), s = std::sqrt(max(0.f, 1 - c * c));
+    const float tan2 = ggx ? u1 / (1 - u1) : -std::log(1 - u1), slope = std::sqrt(tan2);
     const auto [x, y] = on_circle(u2);
-    return {s * x, s * y, c};
+    return normalize(Direction{alpha_x * slope * x, alpha_y * slope * y, 1});
   }
-  const Direction v{alpha * wo.x, alpha * wo.y, wo.z};
+  const Direction v{alpha_x * wo.x, alpha_y * wo.y, wo.z};
   if (ggx) {
     const Direction h = visible_ggx(normalize(v), u1, u2);
-    return normalize(Direction{alpha * h.x, alpha * h.y, max(1e-9f, h.z)});
+    return normalize(Direction{alpha_x * h.x, alpha_y * h.y, max(1e-9f, h.z)});
   }
   const float sine = std::sqrt(v.x * v.x + v.y * v.y);
   const float along = visible_slope(v.z, sine, u1);
   const float across = inverse_erf(2 * u2 - 1);  // a Gaussian of variance 1/2
   const float c = sine > 0 ? v.x / sine : 1, s = sine > 0 ? v.y / sine : 0;
-  return normalize(Direction{-alpha * (c * along - s * across), -alpha * (s * along + c * across), 1});
+  return normalize(Direction{-alpha_x * (c * along - s * across), -alpha_y * (s * along + c * across), 1});
 }
 
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isotropic microfacet distributions with Smith's shadowing, uncorrelated (Walter et al. 2007), and their
-// visible normals: GGX by Heitz 2018 (JCGT 7(4)); Beckmann by inverting the distribution of visible slopes,
-// Heitz & d'Eon 2014 (eq. 10), along wo (visible_slope.hpp), while the slope across is Gaussian.
+// Microfacet distributions of one or two widths with Smith's shadowing, uncorrelated (Walter et al. 2007),
+// and their visible normals: GGX by Heitz 2018 (JCGT 7(4)); Beckmann by inverting the distribution of visible
+// slopes, Heitz & d'Eon 2014 (eq. 10), along wo (visible_slope.hpp), while the slope across is Gaussian.
 #pragma once
 
 #include "reflectree/render/integrators/path_bits.hpp"

@@ -15,8 +15,13 @@ struct Sampled final : Scattering {
   AnyBrdf f;
   AnySampler<Spectrum> sampler;
   std::optional<AnySampler<Spectrum>> adjoint;
+  bool anisotropic;
   Sampled(AnyBrdf function, AnySampler<Spectrum> s, std::optional<AnySampler<Spectrum>> light_side)
-      : f(std::move(function)), sampler(std::move(s)), adjoint(std::move(light_side)) {}
+      : f(std::move(function)),
+        sampler(std::move(s)),
+        adjoint(std::move(light_side)),
+        anisotropic(!f.traits().isotropic_by_formula) {}
+  bool follows_texture() const override { return anisotropic; }
   Rgb f_cos(Direction wo, Direction wi, Uv) const override {
     return wo.z > 0 && wi.z > 0 ? wi.z * to_rgb(eval(f, wo, wi)) : Rgb{};
   }
@@ -175,6 +180,7 @@ struct TwoSided final : Scattering {
   }
   Lobes lobes() const override { return both(*front, *back); }
   bool has_pdf() const override { return front->has_pdf() && back->has_pdf(); }
+  bool follows_texture() const override { return front->follows_texture() || back->follows_texture(); }
 };
 
 struct Blend final : Scattering {
@@ -212,6 +218,7 @@ struct Blend final : Scattering {
   bool transmits() const override { return a->transmits() || b->transmits(); }
   Lobes lobes() const override { return both(*a, *b); }
   bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
+  bool follows_texture() const override { return a->follows_texture() || b->follows_texture(); }
 };
 
 }  // namespace

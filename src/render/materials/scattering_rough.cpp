@@ -15,12 +15,21 @@ namespace {
 struct RoughConductor final : Each<RoughConductor> {
   Roughness roughness;
   Rgb eta, k;
-  Texture specular, alpha;
-  RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t, Texture a)
-      : roughness(r), eta(e), k(absorption), specular(std::move(t)), alpha(std::move(a)) {}
+  Texture specular, alpha_x, alpha_y;
+  bool one_width;  // along x and y
+  RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t, Texture x, Texture y)
+      : roughness(r),
+        eta(e),
+        k(absorption),
+        specular(std::move(t)),
+        alpha_x(std::move(x)),
+        alpha_y(std::move(y)),
+        one_width(alpha_x.picture || alpha_y.picture ? alpha_x == alpha_y : r.alpha.round()) {}
+  bool follows_texture() const override { return !one_width; }
   Microfacets normals_at(Uv uv) const {
     Roughness here = roughness;
-    if (alpha.picture) here.alpha = eval_picture(alpha, uv).r;
+    if (alpha_x.picture) here.alpha.x = eval_picture(alpha_x, uv).r;
+    if (alpha_y.picture) here.alpha.y = one_width ? here.alpha.x : eval_picture(alpha_y, uv).r;
     return Microfacets(here);
   }
   // For both directions above the surface: f cos, and the density with which wi is drawn.
@@ -104,8 +113,10 @@ struct RoughPlastic final : Each<RoughPlastic> {
 
 }  // namespace
 
-ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha) {
-  return std::make_shared<RoughConductor>(roughness, eta, k, std::move(specular), std::move(alpha));
+ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha_x,
+                              Texture alpha_y) {
+  return std::make_shared<RoughConductor>(roughness, eta, k, std::move(specular), std::move(alpha_x),
+                                          std::move(alpha_y));
 }
 ScatteringPtr rough_plastic(PlasticParameters parameters, Roughness roughness) {
   return std::make_shared<RoughPlastic>(std::move(parameters), roughness);

@@ -35,9 +35,9 @@ std::string lower(std::string s) {
 
 }  // namespace
 
-// `picture`: for an alpha that varies; none where it may not.
-Roughness MaterialReader::roughness(Node n, Texture* picture) {
-  Roughness r;
+MaterialReader::Widened MaterialReader::roughness(Node n, bool pictures) {
+  Widened w;
+  Roughness& r = w.roughness;
   const std::string kind = lower(xml_.word(n, "distribution", "beckmann"));
   if (kind != "beckmann" && kind != "ggx")
     xml_.fail(n, "no distribution '" + kind + "'", "use beckmann or ggx");
@@ -47,18 +47,16 @@ Roughness MaterialReader::roughness(Node n, Texture* picture) {
   if (u || v) {
     if (!u || !v || XmlReader::named(n, "alpha"))
       xml_.fail(n, "either alpha, or alpha_u and alpha_v", "write alpha");
-    r.alpha = float(xml_.property(n, "alpha_u", 0));
-    if (float(xml_.property(n, "alpha_v", 0)) != r.alpha)
-      xml_.fail(v, "anisotropic materials are not read here",
-                "write the same number for alpha_u and alpha_v");
-  } else if (picture) {
-    *picture = number(n, "alpha", .1);
-    if (!picture->picture) r.alpha = picture->colour.r;
+    w.x = number(n, "alpha_u", 0), w.y = number(n, "alpha_v", 0);
+  } else if (pictures) {
+    w.x = w.y = number(n, "alpha", .1);
   } else {
-    r.alpha = float(xml_.property(n, "alpha", .1));
+    w.x.colour = w.y.colour = to_rgb(float(xml_.property(n, "alpha", .1)));
   }
-  if (!(r.alpha > 0)) xml_.fail(n, "alpha is not positive", "use conductor or plastic");
-  return r;
+  if (!w.x.picture) r.alpha.x = w.x.colour.r;
+  if (!w.y.picture) r.alpha.y = w.y.colour.r;
+  if (!(r.alpha.x > 0 && r.alpha.y > 0)) xml_.fail(n, "alpha is not positive", "use conductor or plastic");
+  return w;
 }
 
 double MaterialReader::ior(Node n, const char* name, double otherwise) const {
@@ -170,9 +168,9 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
     xml_.only(n, {"eta", "k", "material", "specular_reflectance", "alpha", "alpha_u", "alpha_v",
                   "distribution", "sample_visible"});
     const auto [eta, k] = eta_and_k(n);
-    Texture alpha;
-    const Roughness r = roughness(n, &alpha);
-    return rough_conductor(r, eta, k, texture(n, "specular_reflectance", white), std::move(alpha));
+    Widened alpha = roughness(n, true);
+    return rough_conductor(alpha.roughness, eta, k, texture(n, "specular_reflectance", white),
+                           std::move(alpha.x), std::move(alpha.y));
   }
   if (type == "plastic") {
     xml_.only(n, {"int_ior", "ext_ior", "diffuse_reflectance", "specular_reflectance", "nonlinear"});
@@ -181,7 +179,7 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
   if (type == "roughplastic") {
     xml_.only(n, {"int_ior", "ext_ior", "diffuse_reflectance", "specular_reflectance", "nonlinear", "alpha",
                   "distribution", "sample_visible"});
-    return rough_plastic(plastic_of(n), roughness(n, nullptr));
+    return rough_plastic(plastic_of(n), roughness(n, false).roughness);
   }
   if (type == "dielectric") {
     xml_.only(n, {"int_ior", "ext_ior", "specular_reflectance", "specular_transmittance"});

@@ -24,7 +24,12 @@ class MaterialReader {
   Texture bitmap(Node t) const;
   Texture checkerboard(Node t) const;
   std::array<float, 6> to_uv(Node t) const;
-  Roughness roughness(Node n, Texture* picture);
+  // An interface's widths; pictures in place of the numbers, where it may have any.
+  struct Widened {
+    Roughness roughness;
+    Texture x, y;
+  };
+  Widened roughness(Node n, bool pictures);
   PlasticParameters plastic_of(Node n);
   float relative_ior(Node n, double inside) const;
   double ior(Node n, const char* name, double otherwise) const;

@@ -52,7 +52,70 @@ Interaction on_disk(const Flat& d, const Hit& hit) {
   return {point_on(d, hit.u, hit.v), d.normal, d.normal, uv, d.surface};
 }
 
+// The sides of a triangle are (du, dv) times what u and v differ along them.
+Tangents along_triangle(const Scene& scene, const Triangle& t) {
+  const Vertex &a = scene.vertices[t.corner[0]], &b = scene.vertices[t.corner[1]],
+               &c = scene.vertices[t.corner[2]];
+  const Direction ab = b.at - a.at, ac = c.at - a.at;
+  switch (scene.surfaces[t.surface].mapping) {
+    case Surface::Mapping::corners:
+      return {ab, ac};
+    case Surface::Mapping::swapped_corners:
+      return {ac, ab};
+    case Surface::Mapping::vertices:
+      break;
+  }
+  const float u1 = b.uv.x - a.uv.x, v1 = b.uv.y - a.uv.y, u2 = c.uv.x - a.uv.x, v2 = c.uv.y - a.uv.y;
+  const float determinant = u1 * v2 - v1 * u2;
+  if (determinant == 0) {
+    const auto any = frame_from_normal(normalize(cross(ab, ac)));
+    return {any.s, any.t};
+  }
+  const float over = 1 / determinant;
+  return {over * (v2 * ab - v1 * ac), over * (u1 * ac - u2 * ab)};
+}
+
+Tangents along_sphere(const Sphere& s, const Interaction& on) {
+  const Direction local = to_local(s.axes, s.inwards ? -on.shading : on.shading);
+  const float r = float(s.radius), d = std::sqrt(sin2_theta(local)), over = d > 0 ? 1 / d : 0;
+  const Direction down =
+      d > 0 ? Direction{local.z * local.x * over, local.z * local.y * over, -d} : Direction{1, 0, 0};
+  return {(2 * pi * r) * to_world(s.axes, {-local.y, local.x, 0}), (pi * r) * to_world(s.axes, down)};
+}
+
+Direction to_floats(Vec3<double> v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+// u grows outwards, v round.
+Tangents along_disk(const Flat& d, const Hit& hit) {
+  const double r = std::hypot(hit.u, hit.v), over = r > 0 ? 1 / r : 0;
+  return {to_floats((hit.u * over) * d.s + (hit.v * over) * d.t),
+          to_floats(2 * pi_v<double> * (hit.u * d.t - hit.v * d.s))};
+}
+
 }  // namespace
+
+Tangents tangents_at(const Scene& scene, const Hit& hit, const Interaction& on) {
+  switch (hit.kind) {
+    case Hit::Kind::triangle:
+      return along_triangle(scene, scene.triangles[hit.index]);
+    case Hit::Kind::rectangle: {
+      const Flat& r = scene.rectangles[hit.index];
+      return {to_floats(2. * r.s), to_floats(2. * r.t)};
+    }
+    case Hit::Kind::disk:
+      return along_disk(scene.disks[hit.index], hit);
+    default:
+      return along_sphere(scene.spheres[hit.index], on);
+  }
+}
+
+LocalFrame<float> frame_along(Direction normal, Direction du) {
+  const Direction across = du - dot(normal, du) * normal;
+  const float size2 = dot(across, across);
+  if (!(size2 > 1e-12f * dot(du, du))) return frame_from_normal(normal);
+  const Direction s = (1 / std::sqrt(size2)) * across;
+  return {s, cross(normal, s), normal};
+}
 
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction) {
   switch (hit.kind) {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/models/widths.hpp"
 #include "reflectree/render/integrators/path_bits.hpp"
 #include "reflectree/render/materials/texture.hpp"
 #include "reflectree/sampler/any_sampler.hpp"
@@ -65,20 +66,23 @@ class Scattering {
   bool only_delta() const { return lobes() == Lobes::delta; }
   // False for a method without a density: lights are left to its own directions.
   virtual bool has_pdf() const { return true; }
+  // Whether x and y of the shading frame matter: it then follows the texture coordinates.
+  virtual bool follows_texture() const { return false; }
 };
 using ScatteringPtr = std::shared_ptr<const Scattering>;
 
 struct Roughness {
   enum class Kind { beckmann, ggx } kind = Kind::beckmann;
-  float alpha = .1f;
+  Widths alpha = .1f;  // along the shading frame's x and y
   bool sample_visible = true;
 };
 
 ScatteringPtr diffuse(Texture reflectance);
 // eta = k = 0: a mirror that reflects all.
 ScatteringPtr conductor(Rgb eta, Rgb k, Texture specular);
-// `alpha`: a grey picture in place of the number, if there is one.
-ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha = {});
+// `alpha_x`, `alpha_y`: grey pictures in place of the numbers, where there are any.
+ScatteringPtr rough_conductor(Roughness roughness, Rgb eta, Rgb k, Texture specular, Texture alpha_x = {},
+                              Texture alpha_y = {});
 // `eta`: inside over outside. `nonlinear`: colour shifts of the light that goes round inside.
 struct PlasticParameters {
   float eta = 1.49f / 1.000277f;

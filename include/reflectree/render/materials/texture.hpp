@@ -21,6 +21,7 @@ struct Texture {
   bool nearest = false;                  // otherwise bilinear between the centres of texels
   Wrap wrap = Wrap::repeat;
   std::array<float, 6> to_uv{1, 0, 0, 0, 1, 0};  // by rows, of columns (u, v, 1): the picture's place
+  friend bool operator==(const Texture&, const Texture&) = default;  // of pictures: the same one
 };
 
 Rgb eval_picture(const Texture& texture, Uv uv);

@@ -61,4 +61,14 @@ inline std::uint32_t surface_of(const Scene& scene, const Hit& hit) {
 }
 Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Direction direction);
 
+// How the surface's points move as u and v grow, per unit of them. Without texture coordinates a triangle's
+// u and v are the shares of its corners.
+struct Tangents {
+  Direction du, dv;
+};
+Tangents tangents_at(const Scene& scene, const Hit& hit, const Interaction& on);
+// x along `du`, made perpendicular to `normal`; any frame where du has no such part. As in Mitsuba, y does
+// not turn with v: the frame is right-handed.
+LocalFrame<float> frame_along(Direction normal, Direction du);
+
 }  // namespace reflectree::render
