@@ -30,7 +30,7 @@ LobeMixture fitted(const PeerSubject& subject, const Host& host, LobeKind lobe, 
 
 Made paper(const PeerSubject& subject, const Host& host) {
   PaperOptions options;
-  if (!subject.f.traits().isotropic) options.thetas = 30, options.phis = 24;
+  if (!subject.f.traits().isotropic) options.thetas = 30, options.phis = 48;
   PaperSampler sampler(subject.f, subject.target, options, host);
   const std::size_t bytes = sampler.bytes();
   return AnySampler<Spectrum>("paper", std::move(sampler), bytes);

@@ -32,8 +32,8 @@ double cost(const D& density, const PeerSubject& subject) {
   return total;
 }
 
-std::size_t azimuths_of(const PeerSubject& subject, const TabulatedTuning& tuning) {
-  return subject.f.traits().isotropic ? 1 : std::size_t(tuning.azimuths);
+std::size_t azimuths_of(const PeerSubject& subject, int wanted) {
+  return subject.f.traits().isotropic ? 1 : std::size_t(wanted);
 }
 
 // make(chart, theta_o, phi_o) for every slice.
@@ -41,7 +41,7 @@ template <class Slice, class Make>
 SlicedDensity<Slice> sliced(SquareChart chart, const PeerSubject& subject, const Host& host,
                             const TabulatedTuning& tuning, const Make& make) {
   const std::vector<float> angles = slice_angles(tuning.slices);
-  const std::size_t azimuths = azimuths_of(subject, tuning);
+  const std::size_t azimuths = azimuths_of(subject, tuning.azimuths);
   std::vector<std::optional<Slice>> made(angles.size() * azimuths);
   const auto all = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -113,13 +113,13 @@ MadePeer make_wavelet(const PeerSubject& subject, const Host& host, const Tabula
 MadePeer make_factored(const PeerSubject& subject, const Host&, const TabulatedTuning& tuning) {
   return better_chart("factored", subject, [&](SquareChart chart) {
     return fit_factored(subject.f, subject.target, chart, slice_angles(tuning.slices), tuning.factored,
-                        azimuths_of(subject, tuning));
+                        azimuths_of(subject, tuning.factored.azimuths));
   });
 }
 MadePeer make_warp_chain(const PeerSubject& subject, const Host& host, const TabulatedTuning& tuning) {
   std::vector<float> angles = slice_angles(tuning.warp.slices);
-  auto slices =
-      fit_warp_chain(subject.f, subject.target, angles, tuning.warp, host, azimuths_of(subject, tuning));
+  auto slices = fit_warp_chain(subject.f, subject.target, angles, tuning.warp, host,
+                               azimuths_of(subject, tuning.azimuths));
   return wrapped("warp-chain", subject,
                  SlicedDensity<WarpSlice>(SquareChart::half_vector, std::move(angles), std::move(slices)));
 }

@@ -124,7 +124,7 @@ TEST_P(Tabulated, KnowsTheAzimuth) {
   double variance[2];
   for (const int azimuths : {16, 1}) {
     TabulatedTuning tuning;
-    tuning.azimuths = azimuths;
+    tuning.azimuths = tuning.factored.azimuths = azimuths;
     tuning.slices = tuning.warp.slices = 12;
     const auto sampler = maker->second(subject, {}, tuning);
     ASSERT_TRUE(sampler.has_value());

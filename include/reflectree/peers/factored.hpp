@@ -20,6 +20,7 @@ namespace reflectree {
 struct FactoredOptions {
   int outer_terms = 4, inner_terms = 2;  // J, K
   int width = 64, height = 32;           // cells of x, of y
+  int azimuths = 16;                     // of wo all around, of anisotropic functions
   float floor = 1e-3f;                   // of the mean of each factor: no support is lost
 };
 

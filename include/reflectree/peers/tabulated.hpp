@@ -13,7 +13,7 @@ namespace reflectree {
 // The defaults are those of the registry, chosen by bench/studies/peers_tuning.
 struct TabulatedTuning {
   int slices = 32;    // elevations of wo
-  int azimuths = 16;  // of wo all around, of anisotropic functions
+  int azimuths = 32;  // of wo all around, of anisotropic functions
   int nodes = 64;     // per side, of cdf-table and alias-table
   int cells = 128;    // per side, of adaptive-cdf and wavelet
   // Of the mean of a slice: no support is lost between the points of a table, and no weight is huge.
