@@ -60,6 +60,7 @@ int run_render(const Context& context, Options& o) {
     o.reading.defines[define.substr(0, at)] = define.substr(at + 1);
   }
   render::Scene scene = render::load_scene(o.scene, o.reading, context.host("building"));
+  for (const std::string& note : scene.notes) context.say("note: " + note);
   if (!o.integrator.empty()) scene.transport.method = *render::method_of(o.integrator);
   if (!o.points.empty()) scene.points.kind = *render::points_of(o.points);
   if (o.split > 0) scene.transport.split = o.split;

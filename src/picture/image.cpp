@@ -2,6 +2,7 @@
 #include "reflectree/picture/image.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "reflectree/error.hpp"
@@ -28,13 +29,28 @@ Image make_image(int width, int height, std::vector<std::string> channels) {
   return image;
 }
 
+namespace {
+
+// By its name, or by what its second version ends with.
+bool is_tga(ByteView bytes, const std::string& path) {
+  std::string end = path.substr(path.size() - std::min<std::size_t>(path.size(), 4));
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return end == ".tga" || (bytes.size() >= 18 && starts_with(bytes.last(18), "TRUEVISION-XFILE."));
+}
+
+}  // namespace
+
 Image read_image(const std::string& path) {
   const Bytes bytes = read_file(path, std::uint64_t(1) << 30U);
   if (starts_with(bytes, "#?")) return read_hdr(bytes, path);
   if (starts_with(bytes, "\x76\x2f\x31\x01")) return read_exr(bytes, path);
   if (starts_with(bytes, "\x89PNG")) return read_png(bytes, path);
-  refuse_recognised(bytes, path, "convert it to Radiance .hdr, OpenEXR or PNG");
-  throw Error("neither Radiance .hdr, OpenEXR nor PNG", path, "convert the picture to one of them");
+  if (starts_with(bytes, "\xff\xd8\xff")) return read_jpeg(bytes, path);
+  if (starts_with(bytes, "BM")) return read_bmp(bytes, path);
+  if (is_tga(bytes, path)) return read_tga(bytes, path);
+  refuse_recognised(bytes, path, "convert it to PNG or OpenEXR");
+  throw Error("neither Radiance .hdr, OpenEXR, PNG, JPEG, BMP nor TGA", path,
+              "convert the picture to one of them");
 }
 
 float to_srgb(float v) { return v <= .0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - .055f; }

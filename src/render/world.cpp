@@ -16,44 +16,69 @@ float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs
 PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
     : on(interaction_at(scene, hit, origin, direction)),
       surface(&scene.surfaces[on.surface]),
-      frame(surface->scattering->follows_texture() ? frame_along(on.shading, tangents_at(scene, hit, on).du)
-                                                   : frame_from_normal(on.shading)),
-      wo(to_local(frame, -direction)) {}
+      frame(frame_from_normal(on.shading)) {
+  const Scattering::Asks asks = surface->scattering->asks();
+  if (asks != Scattering::Asks::nothing) {
+    const Tangents along = tangents_at(scene, hit, on);
+    frame = frame_along(on.shading, along.du);
+    if (asks == Scattering::Asks::detail) {
+      detail.emplace();
+      detail->attributes = attributes_at(scene, hit);
+      detail->du = to_local(frame, along.du), detail->dv = to_local(frame, along.dv);
+      detail->face = to_local(frame, on.face);
+    }
+  }
+  wo = to_local(frame, -direction);
+}
 
 Scattering::Value PathVertex::value(Direction wi) const {
   const InPhase evaluating(Phase::eval);
-  return scattering().value(wo, wi, on.uv);
+  return scattering().value(wo, wi, place());
 }
 
 Rgb PathVertex::f_cos(Direction wi) const {
   const InPhase evaluating(Phase::eval);
-  return scattering().f_cos(wo, wi, on.uv);
+  return scattering().f_cos(wo, wi, place());
 }
 
 std::optional<Scattered> PathVertex::sample(PathBits& u) const {
   const InPhase sampling(Phase::sample);
-  return scattering().sample(wo, on.uv, u);
+  return scattering().sample(wo, place(), u);
 }
 
 std::size_t PathVertex::sample_n(std::span<PathBits> u, std::span<Scattered> out) const {
   const InPhase sampling(Phase::sample);
-  return scattering().sample_n(wo, on.uv, u, out);
+  return scattering().sample_n(wo, place(), u, out);
 }
 
 std::optional<Scattered> PathVertex::sample_adjoint(PathBits& u) const {
   const InPhase sampling(Phase::sample);
-  return scattering().sample_adjoint(wo, on.uv, u);
+  return scattering().sample_adjoint(wo, place(), u);
 }
 
 World::World(const Scene& s) : scene(s), embree(s), lights(s) {
   for (const Vertex& v : scene.vertices) extent = std::max(extent, largest(v.at));
   for (const Sphere& sphere : scene.spheres) extent = std::max(extent, float(sphere.radius));
+  for (const Cylinder& c : scene.cylinders) {
+    const auto reach = [&](Vec3<double> v) { return float(length(v)); };
+    extent = std::max(extent, reach(c.base) + reach(c.axis) + reach(c.s));
+  }
   for (const auto* all : {&scene.rectangles, &scene.disks}) {
     for (const Flat& f : *all) {
       for (const double x : {-1., 1.})
         extent = std::max({extent, largest(point_on(f, x, -1)), largest(point_on(f, x, 1))});
     }
   }
+}
+
+std::optional<Hit> World::past_lamps(const Ray& ray, std::optional<Hit> hit) const {
+  if (!scene.hide_lamps) return hit;
+  for (int i = 0; hit && i < 1000 && scene.surfaces[surface_of(scene, *hit)].radiance != Rgb{}; ++i) {
+    const float beyond = hit->distance + near(ray.origin + hit->distance * ray.direction);
+    hit = embree.intersect(
+        {ray.origin, ray.direction, std::max(beyond, std::nextafter(hit->distance, ray.far)), ray.far});
+  }
+  return hit;
 }
 
 bool World::sees(Point at, Direction direction, float distance) const {

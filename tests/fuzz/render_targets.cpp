@@ -40,6 +40,11 @@ void run_ply(ByteView bytes) {
     expect_error_or_success([&] { require_sound(read_ply(bytes, "mesh", flat, flat)); });
 }
 
+void run_serialized(ByteView bytes) {
+  for (const int index : {0, 1})
+    expect_error_or_success([&] { require_sound(read_serialized(bytes, "mesh", index, index > 0)); });
+}
+
 void run_obj(ByteView bytes) {
   for (const bool flat : {false, true})
     expect_error_or_success([&] { require_sound(read_obj(bytes, "mesh", flat, flat)); });
@@ -105,6 +110,69 @@ std::vector<Bytes> hdr_seeds() {
   return {flat, coded};
 }
 
+// 2 x 2 pixels, 24 bits each.
+std::vector<Bytes> bmp_seeds() {
+  Bytes plain = as_bytes("BM");
+  for (const std::uint32_t v : {70U, 0U, 54U, 40U, 2U, 2U, 0x180001U, 0U, 16U, 0U, 0U, 0U, 0U})
+    append_u32(plain, v);
+  for (int i = 0; i < 16; ++i) plain.push_back(std::uint8_t(16 * i));
+  return {plain};
+}
+std::vector<Bytes> tga_seeds() {
+  Bytes plain{0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0}, coded = plain;
+  for (int i = 0; i < 12; ++i) plain.push_back(std::uint8_t(20 * i));
+  coded[2] = 10;
+  for (const int v : {0x81, 10, 20, 30, 1, 1, 2, 3, 4, 5, 6}) coded.push_back(std::uint8_t(v));
+  return {plain, coded};
+}
+// Of one block of 8 x 8, grey, all alike; by libjpeg's standard tables cut to what it needs.
+std::vector<Bytes> jpeg_seeds() {
+  Bytes b;
+  for (const int v : {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0}) b.push_back(std::uint8_t(v));
+  for (int i = 0; i < 64; ++i) b.push_back(1);
+  for (const int v : {0xff, 0xc0, 0,  11,   8,    0, 8, 0, 8, 1, 1, 0x11, 0, 0xff, 0xc4, 0,   20, 0,
+                      1,    0,    0,  0,    0,    0, 0, 0, 0, 0, 0, 0,    0, 0,    0,    0,   6,  0xff,
+                      0xc4, 0,    20, 0x10, 1,    0, 0, 0, 0, 0, 0, 0,    0, 0,    0,    0,   0,  0,
+                      0,    0,    0,  0xff, 0xda, 0, 8, 1, 1, 0, 0, 63,   0, 0x55, 0xff, 0xd9})
+    b.push_back(std::uint8_t(v));
+  return {b};
+}
+
+// Stored blocks: a triangle of floats with a name, and one of doubles with coordinates.
+Bytes stored(const Bytes& raw) {
+  Bytes out;
+  const auto put = [&](std::uint32_t v) { out.push_back(std::uint8_t(v)); };
+  const auto size = std::uint32_t(raw.size());
+  for (const std::uint32_t v : {0x78U, 0x01U, 0x01U, size, size >> 8U, ~size, ~size >> 8U}) put(v);
+  std::uint32_t a = 1, b = 0;
+  for (const std::uint8_t v : raw) put(v), a = (a + v) % 65521, b = (b + a) % 65521;
+  for (const std::uint32_t v : {b >> 8U, b, a >> 8U, a}) put(v);
+  return out;
+}
+std::vector<Bytes> serialized_seeds() {
+  const auto mesh = [](bool wide) {
+    Bytes raw;
+    append_u32(raw, wide ? 0x2002U : 0x1000U);
+    append_text(raw, "name"), raw.push_back(0);
+    append_u64(raw, 3), append_u64(raw, 1);
+    for (int i = 0; i < (wide ? 15 : 9); ++i) {
+      if (wide)
+        append_f64(raw, i % 4 - 1);
+      else
+        append_f32(raw, float(i % 4 - 1));
+    }
+    for (const std::uint32_t c : {0U, 1U, 2U}) append_u32(raw, c);
+    Bytes out{0x1c, 0x04, 0x04, 0x00};
+    for (const std::uint8_t v : stored(raw)) out.push_back(v);
+    return out;
+  };
+  Bytes both = mesh(false);
+  const std::size_t second = both.size();
+  for (const std::uint8_t v : mesh(true)) both.push_back(v);
+  append_u64(both, 0), append_u64(both, second), append_u32(both, 2);
+  return {mesh(true), both};
+}
+
 std::vector<Bytes> ply_seeds() {
   Bytes binary;
   append_text(binary, "ply\nformat binary_little_endian 1.0\n");
@@ -156,6 +224,14 @@ std::vector<Bytes> scene_seeds() {
 <scale x="3"/></transform></texture></bsdf></shape><shape type="sphere"><bsdf type="roughconductor">
 <texture type="checkerboard" name="alpha"/><spectrum name="eta" value="400:1, 700:2"/></bsdf></shape>
 <emitter type="constant"><spectrum name="radiance" value="2"/></emitter>)"),
+      with(R"(<path value="."/><alias id="a" as="b"/><shape type="shapegroup" id="g"><shape type="cylinder">
+<float name="radius" value=".5"/><point name="p1" value="0,1,1"/><bsdf type="bumpmap"><texture type="checkerboard" name="x"/>
+<bsdf type="roughconductor"><float name="alpha_u" value=".1"/><float name="alpha_v" value=".3"/></bsdf></bsdf></shape>
+<shape type="cube"><bsdf type="normalmap"><texture type="checkerboard" name="normalmap"/><bsdf type="diffuse"/></bsdf></shape>
+</shape><shape type="instance"><ref id="g"/><transform name="to_world"><scale value=".5"/></transform></shape>
+<shape type="instance"><ref id="g"/></shape><emitter type="spot"><float name="cutoff_angle" value="40"/></emitter>
+<shape type="disk"><bsdf type="mask"><texture type="checkerboard" name="opacity"/><bsdf type="thindielectric"/></bsdf></shape>
+<shape type="cylinder"><emitter type="area"><texture type="checkerboard" name="radiance"/></emitter></shape>)"),
       with(
           R"(<shape type="sphere"><bsdf type="reflectree"><string name="material" value="lambert:rho=0.5"/></bsdf>
 </shape>)")};
@@ -167,7 +243,11 @@ std::span<const Target> targets() {
   static const Target all[] = {{"png", run_picture<read_png>, png_seeds},
                                {"exr", run_picture<read_exr>, exr_seeds},
                                {"hdr", run_picture<read_hdr>, hdr_seeds},
+                               {"jpeg", run_picture<read_jpeg>, jpeg_seeds},
+                               {"bmp", run_picture<read_bmp>, bmp_seeds},
+                               {"tga", run_picture<read_tga>, tga_seeds},
                                {"ply", run_ply, ply_seeds},
+                               {"serialized", run_serialized, serialized_seeds},
                                {"obj", run_obj, obj_seeds},
                                {"scene", run_scene, scene_seeds}};
   return all;

@@ -18,7 +18,7 @@ struct Target {
   std::vector<Bytes> (*seeds)();  // small valid inputs, made from formulas
 };
 
-// targets.cpp: rgl, merl, zemax, klems, table, material, sampler, grammar; render_targets.cpp: ply, obj, scene.
+// targets.cpp: rgl, merl, zemax, klems, table, material, sampler, grammar; render_targets.cpp: pictures, meshes, scene.
 std::span<const Target> targets();
 
 }  // namespace reflectree::fuzz

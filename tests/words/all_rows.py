@@ -4,12 +4,14 @@ import hashlib
 import json
 import pathlib
 
+import rows_files
+import rows_more
 import rows_numbers
 import rows_pixels
 import rows_shapes
 import rows_tangents
 
-ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS, *rows_tangents.ROWS]
+ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS, *rows_tangents.ROWS, *rows_files.ROWS, *rows_more.ROWS]
 STORED = pathlib.Path(__file__).resolve().parent / "mitsuba.json"
 
 

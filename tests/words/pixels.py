@@ -124,3 +124,55 @@ def unpredicted(data):
     whole = bytearray(len(values))
     whole[0::2], whole[1::2] = values[:half], values[half:]
     return bytes(whole)
+
+
+def bmp(rows, bits=24, palette=None, from_top=False):
+    """`rows` as for png: of three or four values, or of indices of a palette of 256 colours."""
+    width, height = len(rows[0]), len(rows)
+    body = b""
+    for row in rows if from_top else rows[::-1]:
+        line = b"".join(bytes([p[2], p[1], p[0], *p[3:]]) if bits > 8 else bytes(p) for p in row)
+        body += line + bytes(-len(line) % 4)
+    table = b"".join(bytes([b, g, r, 0]) for r, g, b in palette or [])
+    start = 54 + len(table)
+    return (b"BM" + struct.pack("<IIIIiiHHIIiiII", start + len(body), 0, start, 40, width, -height if from_top else height, 1,
+                                bits, 0, len(body), 0, 0, len(table) // 4, 0) + table + body)
+
+
+def tga(rows, coded=False, from_top=False):
+    """`rows` of one, three or four values a pixel; with the end of the second version, by which Mitsuba knows it."""
+    channels = len(rows[0][0])
+    kind = (3 if channels == 1 else 2) + (8 if coded else 0)
+    pixels = [bytes(p) if channels == 1 else bytes([p[2], p[1], p[0], *p[3:]]) for row in (rows if from_top else rows[::-1])
+              for p in row]
+    if coded:
+        pixels = [bytes([0x81]) + a if a == b else bytes([1]) + a + b for a, b in zip(pixels[::2], pixels[1::2])]
+    return struct.pack("<BBBHHBHHHHBB", 0, 0, kind, 0, 0, 0, 0, 0, len(rows[0]), len(rows), 8 * channels,
+                       0x20 if from_top else 0) + b"".join(pixels) + bytes(8) + b"TRUEVISION-XFILE.\0"
+
+
+def jpeg(rows):
+    """Blocks of 8 x 8 pixels, each of one colour: `rows` of one or three values a block, Y or Y, Cb, Cr. No coefficient
+    but the first is needed, so that the tables are ours: differences by twelve codes of four bits, and one for the
+    end."""
+    height, width, n = len(rows), len(rows[0]), len(rows[0][0])
+
+    def part(marker, data):
+        return bytes([0xff, marker]) + struct.pack(">H", len(data) + 2) + data
+
+    bits, last = "", [0] * n
+    for row in rows:
+        for block in row:
+            for c, v in enumerate(block):  # the first coefficient is 8 times the mean; it is divided by 8
+                difference, last[c] = v - 128 - last[c], v - 128
+                size = abs(difference).bit_length()
+                low = difference if difference >= 0 else difference + (1 << size) - 1
+                bits += f"{size:04b}" + (f"{low:0{size}b}" if size else "") + "0"
+    bits += "1" * (-len(bits) % 8)
+    body = bytes(int(bits[i:i + 8], 2) for i in range(0, len(bits), 8)).replace(b"\xff", b"\xff\0")
+    listed = range(1, n + 1)
+    return (b"\xff\xd8" + part(0xdb, bytes([0]) + bytes([8] * 64))
+            + part(0xc0, struct.pack(">BHHB", 8, 8 * height, 8 * width, n) + b"".join(bytes([c, 0x11, 0]) for c in listed))
+            + part(0xc4, bytes([0x00, 0, 0, 0, 12] + [0] * 12) + bytes(range(12)))
+            + part(0xc4, bytes([0x10, 1] + [0] * 15) + b"\0")
+            + part(0xda, bytes([n]) + b"".join(bytes([c, 0]) for c in listed) + bytes([0, 63, 0])) + body + b"\xff\xd9")

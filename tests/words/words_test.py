@@ -59,6 +59,12 @@ class Words(unittest.TestCase):
                 self.assertEqual(line[int(at[2]) - 1], "<", f"{said} in {line}")
                 self.assertEqual(said.count("\n"), 1, "one line")
 
+    def test_all_that_is_wrong_is_told_at_once(self):
+        _, said = self.shown["every unknown word at once"]
+        for problem in ("'reflectence' is not known", "no bsdf 'fur' is known", "no emitter 'sun' is known"):
+            self.assertIn(problem, said)
+        self.assertEqual(len(re.findall(r"scene\.xml:\d+:\d+: ", said)), 3, said)
+
     def test_the_judge_sees_faults(self):
         """Two per cent more light, red for blue, left for right, the sRGB curve: each is another picture."""
         want = STORED[key(BY_WORD["texture: PNG, 8 bits, RGB"])]["numbers"]

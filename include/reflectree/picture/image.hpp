@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures as plain values: Radiance .hdr and PNG in, OpenEXR both ways, PNG out with tone mapping.
+// Pictures as plain values: Radiance .hdr, PNG, JPEG, BMP and TGA in, OpenEXR both ways, PNG out with tone
+// mapping.
 #pragma once
 
 #include <map>
@@ -30,13 +31,17 @@ struct Image {
 // Zeros. Throws Error unless the sizes are positive and at most 2^28 values are asked for.
 Image make_image(int width, int height, std::vector<std::string> channels);
 
-// .hdr (RGBE), .exr or .png, told by the content: every channel that the file has, under its own name (of a
-// PNG Y, YA, RGB or RGBA). PNG values are in [0, 1], `encoded`. EXR channels R, G, B come out with the
+// .hdr (RGBE), .exr, .png, .jpg, .bmp or .tga, told by the content (TGA, which says nothing, by its name):
+// every channel that the file has, under its own name (of 8 and 16 bits Y, YA, RGB or RGBA). Values of 8 and
+// 16 bits are in [0, 1], `encoded`. EXR channels R, G, B come out with the
 // primaries of sRGB, whatever the file's are. Throws Error.
 Image read_image(const std::string& path);
 Image read_hdr(ByteView bytes, const std::string& where);
 Image read_exr(ByteView bytes, const std::string& where);
 Image read_png(ByteView bytes, const std::string& where);
+Image read_jpeg(ByteView bytes, const std::string& where);
+Image read_bmp(ByteView bytes, const std::string& where);
+Image read_tga(ByteView bytes, const std::string& where);
 
 // What a picture shows: Y alone, or R, G, B, by the channels' names and never by their order; without alpha,
 // in linear light. `raw`: values as the file has them. The layer without a name, or the only one. Throws

@@ -24,7 +24,18 @@ struct Surface {
   // How triangles get u and v: from their vertices, or as the shares of the second and third corner; of a
   // mesh that is turned inside out they are the third and second.
   enum class Mapping : std::uint8_t { vertices, corners, swapped_corners } mapping = Mapping::vertices;
+  std::shared_ptr<const Texture> shine{};  // of lamps that are not alike all over: `radiance` is its mean
+  // What its material asks of its mesh, by Texture::attribute: of vertices, or of triangles, from these on.
+  struct Attribute {
+    bool of_triangles = false;
+    std::vector<Rgb> values;
+  };
+  std::vector<Attribute> attributes{};
+  std::uint32_t first_vertex = 0, first_triangle = 0;
 };
+inline Rgb radiance_of(const Surface& surface, Uv uv) {
+  return surface.shine ? eval(*surface.shine, {uv}) : surface.radiance;
+}
 
 // `normal`: for shading, interpolated; zero: the triangle's own, (p1 - p0) x (p2 - p0).
 struct Vertex {
@@ -52,9 +63,28 @@ struct Flat {
   std::uint32_t surface = 0;
 };
 
+// Points base + x s + y t + z axis where x^2 + y^2 = 1 and 0 <= z <= 1, s, t and axis at right angles and s
+// as long as t. Intersected in double precision.
+struct Cylinder {
+  Vec3<double> base, s, t, axis;
+  bool inwards = false;  // its normals
+  std::uint32_t surface = 0;
+};
+
 struct PointLight {
   Point at;
   Rgb intensity;
+};
+// From its place along the frame's n: full up to `beam`, then falling linearly to 0 at `cutoff`, both angles
+// in radians. `picture`, if any, is seen through by (x, y) / z.
+struct SpotLight {
+  Point at;
+  LocalFrame<float> frame;
+  Rgb intensity;
+  float beam = 0, cutoff = 0;
+  std::optional<Texture> picture{};
+  // Towards a direction in which light goes.
+  Rgb towards(Direction direction) const;
 };
 struct DirectionalLight {
   Direction direction;  // in which the light goes
@@ -93,8 +123,10 @@ struct Scene {
   std::vector<Triangle> triangles;
   std::vector<Sphere> spheres;
   std::vector<Flat> rectangles, disks;
+  std::vector<Cylinder> cylinders;
   std::vector<Surface> surfaces;
   std::vector<PointLight> point_lights;
+  std::vector<SpotLight> spot_lights;
   std::vector<DirectionalLight> directional_lights;
   std::optional<Environment> environment;
   Camera camera;
@@ -102,9 +134,11 @@ struct Scene {
   int width = 0, height = 0, samples = 16;
   PointSet points;
   Transport transport;
-  int max_depth = 8;  // path edges, as in Mitsuba; -1: no limit
+  bool hide_lamps = false;  // from the camera, which sees what lies behind them; skies too
+  int max_depth = 8;        // path edges, as in Mitsuba; -1: no limit
   int rr_depth = 5;
-  std::uint64_t identity = 0;  // of the file and all that it names; 0: made in memory
+  std::vector<std::string> notes;  // what the reader has to say: words without effect
+  std::uint64_t identity = 0;      // of the file and all that it names; 0: made in memory
 };
 
 struct SceneOptions {

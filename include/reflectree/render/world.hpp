@@ -35,6 +35,7 @@ struct PathVertex {
   const Surface* surface;
   LocalFrame<float> frame;  // its x follows u where the material asks for that
   Direction wo;
+  std::optional<SurfaceDetail> detail;  // where the material asks for it
   const Scattering& scattering() const { return *surface->scattering; }
   // What its material says, booked for --profile.
   Scattering::Value value(Direction wi) const;
@@ -43,7 +44,9 @@ struct PathVertex {
   std::size_t sample_n(std::span<PathBits> u, std::span<Scattered> out) const;
   std::optional<Scattered> sample_adjoint(PathBits& u) const;  // light comes from wo
   // Light that it emits back.
-  Rgb emitted() const { return wo.z > 0 ? surface->radiance : Rgb{}; }
+  Rgb emitted() const { return wo.z > 0 ? radiance_of(*surface, on.uv) : Rgb{}; }
+  // Valid as long as the vertex stays where it is.
+  Place place() const { return {on.uv, detail ? &*detail : nullptr}; }
 };
 
 struct World {
@@ -60,6 +63,13 @@ struct World {
   Ray shadow_ray(Point at, Direction direction, float distance) const {
     const float start = near(at);
     return {at, direction, start, std::isinf(distance) ? distance : distance * (1 - 1e-4f) - start};
+  }
+  // What the camera's ray shows: where lamps are hidden, the first surface that is none.
+  std::optional<Hit> seen(const Ray& ray) const { return past_lamps(ray, embree.intersect(ray)); }
+  std::optional<Hit> past_lamps(const Ray& ray, std::optional<Hit> hit) const;
+  // Of the sky, as the camera sees it.
+  Rgb backdrop(Direction direction) const {
+    return scene.environment && !scene.hide_lamps ? scene.environment->radiance(direction) : Rgb{};
   }
   bool sees(Point at, Direction direction, float distance) const;
   // Next-event estimation: what a light sends to a vertex, reflected back, if nothing stands in between,

@@ -87,6 +87,10 @@ void PathTracer::meet(Wave& wave, int depth) const {
   const std::size_t n = wave.paths.size();
   wave.hits.resize(n);
   world_.embree.intersect(wave.rays, depth == 1, wave.hits);
+  const bool hides = depth == 1 && scene.hide_lamps, sky = scene.environment && !hides;
+  if (hides) {
+    for (std::size_t i = 0; i < n; ++i) wave.hits[i] = world_.past_lamps(wave.rays[i], wave.hits[i]);
+  }
   wave.starts.assign(groups_ + 1, 0);
   const auto add = [&](const Path& p, Rgb radiance, float other) {
     float share = 1;
@@ -98,16 +102,16 @@ void PathTracer::meet(Wave& wave, int depth) const {
   for (std::size_t i = 0; i < n; ++i) {
     if (wave.hits[i]) {
       ++wave.starts[group_[surface_of(scene, *wave.hits[i])] + 1];
-    } else if (scene.environment) {
+    } else if (sky) {
       wave.escaped.push_back(wave.rays[i].direction);
     }
   }
-  if (scene.environment) {
+  if (sky) {
     wave.sky.resize(wave.escaped.size());
     world_.lights.environment(wave.escaped, wave.sky);
-    auto sky = wave.sky.begin();
+    auto light = wave.sky.begin();
     for (std::size_t i = 0; i < n; ++i) {
-      if (!wave.hits[i]) add(wave.paths[i], sky->radiance, sky->pdf), ++sky;
+      if (!wave.hits[i]) add(wave.paths[i], light->radiance, light->pdf), ++light;
     }
   }
   for (std::size_t g = 0; g < groups_; ++g) wave.starts[g + 1] += wave.starts[g];
@@ -116,11 +120,12 @@ void PathTracer::meet(Wave& wave, int depth) const {
     if (wave.hits[i]) wave.order[wave.starts[group_[surface_of(scene, *wave.hits[i])]]++] = std::uint32_t(i);
   }
   wave.met.clear(), wave.vertices.clear(), wave.views.clear(), wave.points.clear(), wave.bits.clear();
+  wave.vertices.reserve(wave.order.size());  // views point into them
   for (const std::uint32_t i : wave.order) {
     const Path& p = wave.met.emplace_back(wave.paths[i]);
     const Ray& ray = wave.rays[i];
     const PathVertex& at = wave.vertices.emplace_back(scene, *wave.hits[i], ray.origin, ray.direction);
-    wave.views.push_back({at.wo, at.on.uv}), wave.points.push_back(at.on.at), wave.bits.push_back(p.bits);
+    wave.views.push_back({at.wo, at.place()}), wave.points.push_back(at.on.at), wave.bits.push_back(p.bits);
     if (const Rgb emitted = at.emitted(); emitted != Rgb{}) {
       const bool competes = p.drawn_pdf > 0;
       add(p, emitted, competes ? world_.lights.pdf(ray.origin, ray.direction, *wave.hits[i], at.on) : 0);

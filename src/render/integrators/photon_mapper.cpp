@@ -84,8 +84,9 @@ Rgb PhotonMapper::follow(Point origin, Direction direction, int depth, std::uint
                          PathBits& u) const {
   Rgb result, throughput{1, 1, 1};
   for (; edges_left(depth) >= 0; ++depth) {
-    const auto hit = world_.embree.intersect(depth == 1 ? world_.camera_ray(origin, direction)
-                                                        : Ray{origin, direction, world_.near(origin)});
+    const auto hit = depth == 1 ? world_.seen(world_.camera_ray(origin, direction))
+                                : world_.embree.intersect({origin, direction, world_.near(origin)});
+    if (!hit && depth == 1) return world_.backdrop(direction);
     if (!hit) {
       if (world_.scene.environment)
         result = result + throughput * world_.scene.environment->radiance(direction);

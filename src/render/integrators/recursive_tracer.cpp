@@ -28,11 +28,12 @@ Rgb RecursiveTracer::arriving(const Ray& ray, PathBits& u) const {
     if (!(ray.drawn_pdf > 0)) return 1.f;
     return technique_ == Technique::light ? 0.f : heuristic(technique_, ray.drawn_pdf, other);
   };
-  const auto hit = world_.embree.intersect(
-      ray.depth == 1 ? world_.camera_ray(ray.origin, ray.direction)
-                     : render::Ray{ray.origin, ray.direction, world_.near(ray.origin)});
+  const auto hit = ray.depth == 1
+                       ? world_.seen(world_.camera_ray(ray.origin, ray.direction))
+                       : world_.embree.intersect({ray.origin, ray.direction, world_.near(ray.origin)});
   if (!hit) {
     if (!world_.scene.environment) return {};
+    if (ray.depth == 1) return world_.backdrop(ray.direction);
     const auto [radiance, other] = world_.lights.environment(ray.direction);
     return share(other) * radiance;
   }

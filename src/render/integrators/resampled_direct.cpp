@@ -28,6 +28,9 @@ Scene lamps_of(const Scene& scene) {
   for (const Sphere& s : scene.spheres) {
     if (shines(s)) lamps.spheres.push_back(s);
   }
+  for (const Cylinder& c : scene.cylinders) {
+    if (shines(c)) lamps.cylinders.push_back(c);
+  }
   for (const Flat& r : scene.rectangles) {
     if (shines(r)) lamps.rectangles.push_back(r);
   }
@@ -55,11 +58,8 @@ ResampledDirect::Arriving ResampledDirect::unshadowed(Point at, Direction direct
 
 Rgb ResampledDirect::radiance(Point origin, Direction direction, PathBits& u) const {
   if (world_.scene.max_depth == 0) return {};
-  const auto hit = world_.embree.intersect(world_.camera_ray(origin, direction));
-  if (!hit) {
-    const auto& sky = world_.scene.environment;
-    return sky ? sky->radiance(direction) : Rgb{};
-  }
+  const auto hit = world_.seen(world_.camera_ray(origin, direction));
+  if (!hit) return world_.backdrop(direction);
   const PathVertex at(world_.scene, *hit, origin, direction);
   return at.emitted() + (world_.scene.max_depth == 1 ? Rgb{} : reflected(at, u));
 }

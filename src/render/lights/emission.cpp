@@ -22,6 +22,9 @@ float area_of(const Scene& scene, const Triangle& t) {
 }
 float area_of(const Sphere& s) { return float(4 * M_PI * s.radius * s.radius); }
 
+// Of directions in which it sends light.
+float cone(const SpotLight& p) { return 2 * pi * (1 - std::cos(p.cutoff)); }
+
 Direction uniform_direction(PathBits& u) {
   const float z = 1 - 2 * to_unit_float(u()), phi = 2 * pi * to_unit_float(u());
   const float r = std::sqrt(std::max(0.f, 1 - z * z));
@@ -57,6 +60,12 @@ void Emission::enclose() {
     for (const double x : {-1., 1.}) hold(point_on(r, x, -1), 0), hold(point_on(r, x, 1), 0);
   }
   for (const Flat& d : scene_.disks) hold(point_on(d, 0, 0), float(std::hypot(length(d.s), length(d.t))));
+  for (const Cylinder& c : scene_.cylinders) {
+    for (const double z : {0., 1.}) {
+      const Vec3<double> end = c.base + z * c.axis;
+      hold({float(end.x), float(end.y), float(end.z)}, float(length(c.s)));
+    }
+  }
   if (low.x > high.x) return;
   centre_ = .5f * (low + high);
   reach_ = 1.0001f * length(high - low) / 2;
@@ -82,6 +91,10 @@ Emission::Emission(const Scene& scene) : scene_(scene) {
     area(Kind::rectangle, i, scene.rectangles[i].surface, float(rectangle_area(scene.rectangles[i])));
   for (std::size_t i = 0; i < scene.disks.size(); ++i)
     area(Kind::disk, i, scene.disks[i].surface, float(disk_area(scene.disks[i])));
+  for (std::size_t i = 0; i < scene.cylinders.size(); ++i)
+    area(Kind::cylinder, i, scene.cylinders[i].surface, float(cylinder_area(scene.cylinders[i])));
+  for (std::size_t i = 0; i < scene.spot_lights.size(); ++i)
+    add(Kind::spot, i, cone(scene.spot_lights[i]) * scene.spot_lights[i].intensity);
   for (std::size_t i = 0; i < scene.point_lights.size(); ++i)
     add(Kind::point, i, (4 * pi) * scene.point_lights[i].intensity);
   const float shade = pi * reach_ * reach_;
@@ -110,7 +123,7 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
     const Interaction on = interaction_at(scene_, {kind, index, 1, a, b}, origin, towards);
     u.begin(1, Decision::light);
     const Direction d = to_world(frame_from_normal(on.normal()), cosine_direction(u));
-    const Rgb radiance = dot(on.shading, d) > 0 ? scene_.surfaces[on.surface].radiance : Rgb{};
+    const Rgb radiance = dot(on.shading, d) > 0 ? radiance_of(scene_.surfaces[on.surface], on.uv) : Rgb{};
     return Emitted{on.at, d, (pi * size) * radiance, true};
   };
   Emitted e{};
@@ -134,6 +147,23 @@ std::optional<Emitted> Emission::sample(PathBits& u) const {
     case Source::Kind::disk: {
       const auto [x, y] = in_disk(u);
       e = leaving(Hit::Kind::disk, float(disk_area(scene_.disks[index])), x, y, {}, {});
+      break;
+    }
+    case Source::Kind::cylinder: {
+      const Cylinder& c = scene_.cylinders[index];
+      const auto [x, y, z] = in_cylinder(u);
+      const Vec3<double> centre = c.base + z * c.axis, out = x * c.s + y * c.t;
+      e = leaving(Hit::Kind::cylinder, float(cylinder_area(c)), 0, 0,
+                  {float(centre.x), float(centre.y), float(centre.z)},
+                  {float(out.x), float(out.y), float(out.z)});
+      break;
+    }
+    case Source::Kind::spot: {
+      const SpotLight& p = scene_.spot_lights[index];
+      const float z = 1 - to_unit_float(u()) * (1 - std::cos(p.cutoff)),
+                  r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * pi * to_unit_float(u());
+      const Direction along = to_world(p.frame, {r * std::cos(phi), r * std::sin(phi), z});
+      e = {p.at, along, cone(p) * p.towards(along), true};
       break;
     }
     case Source::Kind::point: {

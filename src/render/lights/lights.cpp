@@ -74,6 +74,16 @@ Direction facing(const Scene& scene, const Triangle& t) {
 
 }  // namespace
 
+Rgb SpotLight::towards(Direction direction) const {
+  const Direction w = to_local(frame, direction);
+  const float angle = angle_of(std::sqrt(sin2_theta(w)), w.z);
+  if (!(angle < cutoff)) return {};
+  const float fall = angle <= beam ? 1 : (cutoff - angle) / (cutoff - beam);
+  if (!picture) return fall * intensity;
+  const float over = .5f / (w.z * std::tan(cutoff));
+  return fall * (intensity * eval(*picture, {{.5f + over * w.x, .5f + over * w.y}}));
+}
+
 Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size()) {
   using Kind = Light::Kind;
   std::vector<std::size_t> light_of(scene.surfaces.size(), std::size_t(-1));
@@ -102,7 +112,9 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
   add_shining(Kind::sphere, scene.spheres, [](const Sphere&) { return 1; });
   add_shining(Kind::rectangle, scene.rectangles, rectangle_area);
   add_shining(Kind::disk, scene.disks, disk_area);
+  add_shining(Kind::cylinder, scene.cylinders, cylinder_area);
   for (std::size_t i = 0; i < scene.point_lights.size(); ++i) add(Kind::point, i, {}, 1);
+  for (std::size_t i = 0; i < scene.spot_lights.size(); ++i) add(Kind::spot, i, {}, 1);
   for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) add(Kind::directional, i, {}, 1);
   if (scene.environment) add(Kind::environment, 0, {}, 1);
   share_ = 1 / float(lights_.size());
@@ -152,6 +164,12 @@ void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
   from_environment();
 }
 
+void Lights::look_up(const Hit& hit, Point at, std::optional<LightSample>& s) const {
+  if (!s) return;
+  const Surface& surface = scene_.surfaces[surface_of(scene_, hit)];
+  if (surface.shine) s->radiance = radiance_of(surface, interaction_at(scene_, hit, at, s->direction).uv);
+}
+
 // In place: `s` is empty before.
 void Lights::sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const {
   switch (light.kind) {
@@ -164,21 +182,35 @@ void Lights::sample_light(const Light& light, Point at, PathBits& u, std::option
         normal = interaction_at(scene_, hit, {}, {}).normal();
       }
       s = sample_area(at, part.at + b * part.ab + c * part.ac, normal, light.density, light.radiance);
+      look_up({Hit::Kind::triangle, part.triangle, 0, double(b), double(c)}, at, s);
       break;
     }
     case Light::Kind::sphere:
       s = sample_sphere(scene_.spheres[light.index], at, share_, light.radiance, u);
+      look_up({Hit::Kind::sphere, light.index, s ? s->distance : 0, 0, 0}, at, s);
       break;
     case Light::Kind::rectangle: {
       const Flat& r = scene_.rectangles[light.index];
       const auto [x, y] = in_rectangle(u);
       s = sample_area(at, point_on(r, x, y), r.normal, light.density, light.radiance);
+      look_up({Hit::Kind::rectangle, light.index, 0, x, y}, at, s);
       break;
     }
     case Light::Kind::disk: {
       const Flat& d = scene_.disks[light.index];
       const auto [x, y] = in_disk(u);
       s = sample_area(at, point_on(d, x, y), d.normal, light.density, light.radiance);
+      look_up({Hit::Kind::disk, light.index, 0, x, y}, at, s);
+      break;
+    }
+    case Light::Kind::cylinder: {
+      const Cylinder& c = scene_.cylinders[light.index];
+      const auto [x, y, z] = in_cylinder(u);
+      const Vec3<double> out = x * c.s + y * c.t, p = c.base + out + z * c.axis,
+                         n = (c.inwards ? -1 : 1) * normalize(out);
+      s = sample_area(at, {float(p.x), float(p.y), float(p.z)}, {float(n.x), float(n.y), float(n.z)},
+                      light.density, light.radiance);
+      look_up({Hit::Kind::cylinder, light.index, s ? s->distance : 0, 0, 0}, at, s);
       break;
     }
     case Light::Kind::point: {
@@ -187,6 +219,16 @@ void Lights::sample_light(const Light& light, Point at, PathBits& u, std::option
       if (!(distance > 0)) return;
       s = LightSample{(1 / distance) * (p.at - at), distance, share_, true,
                       (1 / (distance * distance)) * p.intensity};
+      break;
+    }
+    case Light::Kind::spot: {
+      const SpotLight& p = scene_.spot_lights[light.index];
+      const float distance = length(p.at - at);
+      if (!(distance > 0)) return;
+      const Direction to = (1 / distance) * (p.at - at);
+      const Rgb intensity = p.towards(-to);
+      if (intensity != Rgb{})
+        s = LightSample{to, distance, share_, true, (1 / (distance * distance)) * intensity};
       break;
     }
     case Light::Kind::directional: {
@@ -212,9 +254,10 @@ float Lights::pdf(Point at, Direction direction, const Hit& hit, const Interacti
     const double cone = cone_of(s, dot(to, to));
     return cone > 0 && !s.inwards ? share_ * cone_density(cone) : 0;
   }
-  const double area = hit.kind == Hit::Kind::rectangle ? rectangle_area(scene_.rectangles[hit.index])
-                      : hit.kind == Hit::Kind::disk    ? disk_area(scene_.disks[hit.index])
-                                                       : area_[on.surface];
+  const double area = hit.kind == Hit::Kind::rectangle  ? rectangle_area(scene_.rectangles[hit.index])
+                      : hit.kind == Hit::Kind::disk     ? disk_area(scene_.disks[hit.index])
+                      : hit.kind == Hit::Kind::cylinder ? cylinder_area(scene_.cylinders[hit.index])
+                                                        : area_[on.surface];
   return share_ * hit.distance * hit.distance / (cosine * float(area));
 }
 

@@ -28,6 +28,10 @@ inline Rgb ground(Rgb rho, float inside, bool nonlinear) {
   return {one(rho.r), one(rho.g), one(rho.b)};
 }
 
+inline Scattering::Asks asks_for(const Texture& texture) {
+  return texture.attribute >= 0 ? Scattering::Asks::detail : Scattering::Asks::nothing;
+}
+
 // How much of a plastic's light the interface is expected to send.
 inline float specular_share(const PlasticParameters& p) {
   const Rgb d = mean(p.diffuse), s = mean(p.specular);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any function with any sampler; and materials made of others.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -21,14 +22,14 @@ struct Sampled final : Scattering {
         sampler(std::move(s)),
         adjoint(std::move(light_side)),
         anisotropic(!f.traits().isotropic_by_formula) {}
-  bool follows_texture() const override { return anisotropic; }
-  Rgb f_cos(Direction wo, Direction wi, Uv) const override {
+  Asks asks() const override { return anisotropic ? Asks::frame : Asks::nothing; }
+  Rgb f_cos(Direction wo, Direction wi, Place) const override {
     return wo.z > 0 && wi.z > 0 ? wi.z * to_rgb(eval(f, wo, wi)) : Rgb{};
   }
-  float pdf(Direction wo, Direction wi, Uv) const override {
+  float pdf(Direction wo, Direction wi, Place) const override {
     return wo.z > 0 && wi.z > 0 ? sampler.pdf(wo, wi) : 0;
   }
-  std::optional<Scattered> sample(Direction wo, Uv, PathBits& u) const override {
+  std::optional<Scattered> sample(Direction wo, Place, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     UniformBits bits = u.lend();
     const auto drawn = sampler.sample(wo, bits);
@@ -91,8 +92,9 @@ struct Sampled final : Scattering {
     }
     together.evaluate(finish);
   }
-  std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
-    if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, uv, u, out);
+  std::size_t sample_n(Direction wo, Place place, std::span<PathBits> u,
+                       std::span<Scattered> out) const override {
+    if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, place, u, out);
     if (!(wo.z > 0)) return 0;
     // Once a thread: a spectrum has room for 256 channels, and clearing 64 of them costs more than drawing.
     thread_local std::array<DirectionSample<Spectrum>, max_split> drawn;
@@ -102,7 +104,7 @@ struct Sampled final : Scattering {
     for (std::size_t i = 0; i < filled; ++i) out[i] = {drawn[i].wi, drawn[i].pdf, to_rgb(drawn[i].weight)};
     return filled;
   }
-  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
+  std::optional<Scattered> sample_adjoint(Direction wi, Place place, PathBits& u) const override {
     if (!(wi.z > 0)) return std::nullopt;
     if (adjoint) {
       UniformBits bits = u.lend();
@@ -122,7 +124,7 @@ struct Sampled final : Scattering {
       if (!drawn) return std::nullopt;
       wo = drawn->wi;
     }
-    const float density = cosine * cosine_pdf(wo) + (1 - cosine) * pdf(wi, wo, uv);
+    const float density = cosine * cosine_pdf(wo) + (1 - cosine) * pdf(wi, wo, place);
     if (!(density > 0)) return std::nullopt;
     return Scattered{wo, density, (wo.z / density) * to_rgb(eval(f, wo, wi))};
   }
@@ -151,36 +153,37 @@ constexpr Direction flipped(Direction w) { return {w.x, w.y, -w.z}; }
 struct TwoSided final : Scattering {
   ScatteringPtr front, back;
   TwoSided(ScatteringPtr a, ScatteringPtr b) : front(std::move(a)), back(std::move(b)) {}
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
-    return wo.z > 0 ? front->f_cos(wo, wi, uv) : back->f_cos(flipped(wo), flipped(wi), uv);
+  Rgb f_cos(Direction wo, Direction wi, Place place) const override {
+    return wo.z > 0 ? front->f_cos(wo, wi, place) : back->f_cos(flipped(wo), flipped(wi), place);
   }
-  float pdf(Direction wo, Direction wi, Uv uv) const override {
-    return wo.z > 0 ? front->pdf(wo, wi, uv) : back->pdf(flipped(wo), flipped(wi), uv);
+  float pdf(Direction wo, Direction wi, Place place) const override {
+    return wo.z > 0 ? front->pdf(wo, wi, place) : back->pdf(flipped(wo), flipped(wi), place);
   }
-  Value value(Direction wo, Direction wi, Uv uv) const override {
-    return wo.z > 0 ? front->value(wo, wi, uv) : back->value(flipped(wo), flipped(wi), uv);
+  Value value(Direction wo, Direction wi, Place place) const override {
+    return wo.z > 0 ? front->value(wo, wi, place) : back->value(flipped(wo), flipped(wi), place);
   }
-  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
-    if (wo.z > 0) return front->sample(wo, uv, u);
-    auto drawn = back->sample(flipped(wo), uv, u);
+  std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
+    if (wo.z > 0) return front->sample(wo, place, u);
+    auto drawn = back->sample(flipped(wo), place, u);
     if (drawn) drawn->wi = flipped(drawn->wi);
     return drawn;
   }
-  std::size_t sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const override {
-    if (wo.z > 0) return front->sample_n(wo, uv, u, out);
-    const std::size_t filled = back->sample_n(flipped(wo), uv, u, out);
+  std::size_t sample_n(Direction wo, Place place, std::span<PathBits> u,
+                       std::span<Scattered> out) const override {
+    if (wo.z > 0) return front->sample_n(wo, place, u, out);
+    const std::size_t filled = back->sample_n(flipped(wo), place, u, out);
     for (Scattered& s : out.first(filled)) s.wi = flipped(s.wi);
     return filled;
   }
-  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
-    if (wi.z > 0) return front->sample_adjoint(wi, uv, u);
-    auto drawn = back->sample_adjoint(flipped(wi), uv, u);
+  std::optional<Scattered> sample_adjoint(Direction wi, Place place, PathBits& u) const override {
+    if (wi.z > 0) return front->sample_adjoint(wi, place, u);
+    auto drawn = back->sample_adjoint(flipped(wi), place, u);
     if (drawn) drawn->wi = flipped(drawn->wi);
     return drawn;
   }
   Lobes lobes() const override { return both(*front, *back); }
   bool has_pdf() const override { return front->has_pdf() && back->has_pdf(); }
-  bool follows_texture() const override { return front->follows_texture() || back->follows_texture(); }
+  Asks asks() const override { return std::max(front->asks(), back->asks()); }
 };
 
 struct Blend final : Scattering {
@@ -188,66 +191,68 @@ struct Blend final : Scattering {
   ScatteringPtr a, b;
   Blend(Texture w, ScatteringPtr first, ScatteringPtr second)
       : weight(std::move(w)), a(std::move(first)), b(std::move(second)) {}
-  float share(Uv uv) const { return clamp(eval(weight, uv).r, 0.f, 1.f); }
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override {
-    const float w = share(uv);
-    return (1 - w) * a->f_cos(wo, wi, uv) + w * b->f_cos(wo, wi, uv);
+  float share(Place place) const { return clamp(eval(weight, place).r, 0.f, 1.f); }
+  Rgb f_cos(Direction wo, Direction wi, Place place) const override {
+    const float w = share(place);
+    return (1 - w) * a->f_cos(wo, wi, place) + w * b->f_cos(wo, wi, place);
   }
-  float pdf(Direction wo, Direction wi, Uv uv) const override {
-    const float w = share(uv);
-    return (1 - w) * a->pdf(wo, wi, uv) + w * b->pdf(wo, wi, uv);
+  float pdf(Direction wo, Direction wi, Place place) const override {
+    const float w = share(place);
+    return (1 - w) * a->pdf(wo, wi, place) + w * b->pdf(wo, wi, place);
   }
-  Value value(Direction wo, Direction wi, Uv uv) const override {
-    const float w = share(uv);
-    const Value of_a = a->value(wo, wi, uv), of_b = b->value(wo, wi, uv);
+  Value value(Direction wo, Direction wi, Place place) const override {
+    const float w = share(place);
+    const Value of_a = a->value(wo, wi, place), of_b = b->value(wo, wi, place);
     return {(1 - w) * of_a.f_cos + w * of_b.f_cos, (1 - w) * of_a.pdf + w * of_b.pdf};
   }
   // One part is drawn by its share; where both have densities, its direction is weighed by the sum of both.
-  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
-    const float w = share(uv);
-    auto drawn = to_unit_float(u()) < w ? b->sample(wo, uv, u) : a->sample(wo, uv, u);
+  std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
+    const float w = share(place);
+    auto drawn = to_unit_float(u()) < w ? b->sample(wo, place, u) : a->sample(wo, place, u);
     if (!drawn || drawn->delta || !has_pdf()) return drawn;
-    const Value v = value(wo, drawn->wi, uv);
+    const Value v = value(wo, drawn->wi, place);
     if (!(v.pdf > 0)) return std::nullopt;
     drawn->pdf = v.pdf, drawn->weight = (1 / v.pdf) * v.f_cos;
     return drawn;
   }
-  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
-    return to_unit_float(u()) < share(uv) ? b->sample_adjoint(wi, uv, u) : a->sample_adjoint(wi, uv, u);
+  std::optional<Scattered> sample_adjoint(Direction wi, Place place, PathBits& u) const override {
+    return to_unit_float(u()) < share(place) ? b->sample_adjoint(wi, place, u)
+                                             : a->sample_adjoint(wi, place, u);
   }
   bool transmits() const override { return a->transmits() || b->transmits(); }
   Lobes lobes() const override { return both(*a, *b); }
   bool has_pdf() const override { return a->has_pdf() && b->has_pdf(); }
-  bool follows_texture() const override { return a->follows_texture() || b->follows_texture(); }
+  Asks asks() const override { return std::max({a->asks(), b->asks(), asks_for(weight)}); }
 };
 
 }  // namespace
 
 void Scattering::values(std::span<const View> views, std::span<const Direction> wi,
                         std::span<Value> out) const {
-  for (std::size_t i = 0; i < views.size(); ++i) out[i] = value(views[i].wo, wi[i], views[i].uv);
+  for (std::size_t i = 0; i < views.size(); ++i) out[i] = value(views[i].wo, wi[i], views[i].place);
 }
 
 void Scattering::samples(std::span<const View> views, std::span<PathBits* const> u,
                          std::span<std::optional<Scattered>> out) const {
-  for (std::size_t i = 0; i < views.size(); ++i) out[i] = sample(views[i].wo, views[i].uv, *u[i]);
+  for (std::size_t i = 0; i < views.size(); ++i) out[i] = sample(views[i].wo, views[i].place, *u[i]);
 }
 
-std::size_t Scattering::sample_n(Direction wo, Uv uv, std::span<PathBits> u, std::span<Scattered> out) const {
+std::size_t Scattering::sample_n(Direction wo, Place place, std::span<PathBits> u,
+                                 std::span<Scattered> out) const {
   std::size_t filled = 0;
   for (const PathBits& own : u) {
     PathBits bits = own;
-    const auto drawn = sample(wo, uv, bits);
+    const auto drawn = sample(wo, place, bits);
     if (drawn) out[filled] = *drawn, u[filled++] = bits;
   }
   return filled;
 }
 
-std::optional<Scattered> Scattering::sample_adjoint(Direction wi, Uv uv, PathBits& u) const {
-  auto drawn = sample(wi, uv, u);
+std::optional<Scattered> Scattering::sample_adjoint(Direction wi, Place place, PathBits& u) const {
+  auto drawn = sample(wi, place, u);
   if (!drawn || drawn->delta) return drawn;  // mirrors are reciprocal
   const Direction wo = drawn->wi;
-  drawn->weight = std::abs(wo.z / wi.z) / drawn->pdf * f_cos(wo, wi, uv);
+  drawn->weight = std::abs(wo.z / wi.z) / drawn->pdf * f_cos(wo, wi, place);
   return drawn;
 }
 

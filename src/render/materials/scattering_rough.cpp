@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Metal and plastic with a microfacet interface.
+#include <algorithm>
 #include <array>
 
 #include "cosine_lobe.hpp"
@@ -24,32 +25,35 @@ struct RoughConductor final : Each<RoughConductor> {
         specular(std::move(t)),
         alpha_x(std::move(x)),
         alpha_y(std::move(y)),
-        one_width(alpha_x.picture || alpha_y.picture ? alpha_x == alpha_y : r.alpha.round()) {}
-  bool follows_texture() const override { return !one_width; }
-  Microfacets normals_at(Uv uv) const {
+        one_width(varies(alpha_x) || varies(alpha_y) ? alpha_x == alpha_y : r.alpha.round()) {}
+  Asks asks() const override {
+    return std::max(
+        {one_width ? Asks::nothing : Asks::frame, asks_for(specular), asks_for(alpha_x), asks_for(alpha_y)});
+  }
+  Microfacets normals_at(Place place) const {
     Roughness here = roughness;
-    if (alpha_x.picture) here.alpha.x = eval_picture(alpha_x, uv).r;
-    if (alpha_y.picture) here.alpha.y = one_width ? here.alpha.x : eval_picture(alpha_y, uv).r;
+    if (varies(alpha_x)) here.alpha.x = eval(alpha_x, place).r;
+    if (varies(alpha_y)) here.alpha.y = one_width ? here.alpha.x : eval(alpha_y, place).r;
     return Microfacets(here);
   }
   // For both directions above the surface: f cos, and the density with which wi is drawn.
-  Value about(const Microfacets& normals, Direction wh, Direction wo, Direction wi, Uv uv) const {
+  Value about(const Microfacets& normals, Direction wh, Direction wo, Direction wi, Place place) const {
     const float d = normals.d(wh), g1_o = normals.g1(wo), cosine = dot(wo, wh);
     const float common = d * g1_o * normals.g1(wi) / (4 * wo.z);
-    return {common * (eval(specular, uv) * fresnel_conductor(cosine, eta, k)),
+    return {common * (eval(specular, place) * fresnel_conductor(cosine, eta, k)),
             normals.pdf(wo, wh, d, g1_o) / (4 * cosine)};
   }
-  Value value(Direction wo, Direction wi, Uv uv) const override {
-    return wo.z > 0 && wi.z > 0 ? about(normals_at(uv), normalize(wo + wi), wo, wi, uv) : Value{};
+  Value value(Direction wo, Direction wi, Place place) const override {
+    return wo.z > 0 && wi.z > 0 ? about(normals_at(place), normalize(wo + wi), wo, wi, place) : Value{};
   }
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).f_cos; }
-  float pdf(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).pdf; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
+  Rgb f_cos(Direction wo, Direction wi, Place place) const override { return value(wo, wi, place).f_cos; }
+  float pdf(Direction wo, Direction wi, Place place) const override { return value(wo, wi, place).pdf; }
+  std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
-    const Microfacets here = normals_at(uv);
+    const Microfacets here = normals_at(place);
     const Direction wh = here.sample(wo, u), wi = reflect(wo, wh);
     if (!(wi.z > 0) || !(dot(wo, wh) > 0)) return std::nullopt;
-    const Value v = about(here, wh, wo, wi, uv);
+    const Value v = about(here, wh, wo, wi, place);
     if (!(v.pdf > 0)) return std::nullopt;
     return Scattered{wi, v.pdf, (1 / v.pdf) * v.f_cos};
   }
@@ -76,6 +80,7 @@ struct RoughPlastic final : Each<RoughPlastic> {
     }
     inside = float(2 * sum / double(nodes));
   }
+  Asks asks() const override { return std::max(asks_for(p.diffuse), asks_for(p.specular)); }
   float transmittance(float cosine) const {
     const float x = cosine * float(nodes - 1);
     const std::size_t i = std::min(std::size_t(x), nodes - 2);
@@ -86,26 +91,26 @@ struct RoughPlastic final : Each<RoughPlastic> {
     return s + d > 0 ? s / (s + d) : 1;
   }
   // For both directions above the surface: f cos, and the density with which wi is drawn.
-  Value about(Direction wh, Direction wo, Direction wi, float specular, Uv uv) const {
+  Value about(Direction wh, Direction wo, Direction wi, float specular, Place place) const {
     const float d = normals.d(wh), g1_o = normals.g1(wo), cosine = dot(wo, wh);
     const float gloss = fresnel(cosine, p.eta).reflectance * d * g1_o * normals.g1(wi) / (4 * wo.z);
     const float t = transmittance(wo.z) * transmittance(wi.z) * cosine_pdf(wi) / (p.eta * p.eta);
-    return {gloss * eval(p.specular, uv) + t * ground(eval(p.diffuse, uv), inside, p.nonlinear),
+    return {gloss * eval(p.specular, place) + t * ground(eval(p.diffuse, place), inside, p.nonlinear),
             specular * normals.pdf(wo, wh, d, g1_o) / (4 * cosine) + (1 - specular) * cosine_pdf(wi)};
   }
-  Value value(Direction wo, Direction wi, Uv uv) const override {
-    return wo.z > 0 && wi.z > 0 ? about(normalize(wo + wi), wo, wi, chance(wo), uv) : Value{};
+  Value value(Direction wo, Direction wi, Place place) const override {
+    return wo.z > 0 && wi.z > 0 ? about(normalize(wo + wi), wo, wi, chance(wo), place) : Value{};
   }
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).f_cos; }
-  float pdf(Direction wo, Direction wi, Uv uv) const override { return value(wo, wi, uv).pdf; }
-  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
+  Rgb f_cos(Direction wo, Direction wi, Place place) const override { return value(wo, wi, place).f_cos; }
+  float pdf(Direction wo, Direction wi, Place place) const override { return value(wo, wi, place).pdf; }
+  std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
     if (!(wo.z > 0)) return std::nullopt;
     const float u1 = to_unit_float(u()), u2 = to_unit_float(u());  // first, for points that are a net in two
     const float specular = chance(wo);
     const Direction wi =
         to_unit_float(u()) < specular ? reflect(wo, normals.sample(wo, u1, u2)) : cosine_direction(u1, u2);
     if (!(wi.z > 0)) return std::nullopt;
-    const Value v = about(normalize(wo + wi), wo, wi, specular, uv);
+    const Value v = about(normalize(wo + wi), wo, wi, specular, place);
     if (!(v.pdf > 0)) return std::nullopt;
     return Scattered{wi, v.pdf, (1 / v.pdf) * v.f_cos};
   }

@@ -51,7 +51,29 @@ Rgb eval_picture(const Texture& texture, Uv uv) {
          y.t * ((1 - x.t) * texel(p, x.a, y.b) + x.t * texel(p, x.b, y.b));
 }
 
+Rgb eval_attribute(const Texture& texture, const SurfaceDetail* detail) {
+  if (!detail) return {};
+  const Rgb v = texture.scale * detail->attributes[std::size_t(texture.attribute)];
+  return texture.grey ? to_rgb(luminance(v)) : v;
+}
+
+// Of the bilinear patch between four texels; of the nearest one none.
+Vec2<float> gradient(const Texture& texture, Uv uv) {
+  if (!texture.picture || texture.nearest) return {0, 0};
+  const Image& p = *texture.picture;
+  const auto& m = texture.to_uv;
+  const float u = within_reach((m[0] * uv.x + m[1] * uv.y + m[2]) * float(p.width)),
+              v = within_reach((m[3] * uv.x + m[4] * uv.y + m[5]) * float(p.height));
+  const Between x = between(u, p.width, texture.wrap), y = between(v, p.height, texture.wrap);
+  const auto at = [&](int i, int j) { return luminance(texel(p, i, j)); };
+  const float f00 = at(x.a, y.a), f10 = at(x.b, y.a), f01 = at(x.a, y.b), f11 = at(x.b, y.b);
+  const float du = float(p.width) * linear_mix(y.t, f10 - f00, f11 - f01),
+              dv = float(p.height) * linear_mix(x.t, f01 - f00, f11 - f10);
+  return {m[0] * du + m[3] * dv, m[1] * du + m[4] * dv};
+}
+
 Rgb mean(const Texture& texture) {
+  if (texture.attribute >= 0) return to_rgb(.5f);  // it is not known here
   if (!texture.picture) return texture.colour;
   double sum[3] = {};
   const Image& p = *texture.picture;

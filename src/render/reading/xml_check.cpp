@@ -34,6 +34,7 @@ const Attributes* attributes_of(std::string_view tag) {
       {"lookat", {"origin", "target"}, {"up"}},
       {"matrix", {"value"}, {}},
       {"ref", {"id"}, {"name"}},
+      {"alias", {"id", "as"}, {}},
       {"default", {"name", "value"}, {}},
       {"scene", {}, {"version", "type", "id", "name"}},
   };
@@ -52,33 +53,80 @@ bool has(const std::vector<std::string_view>& all, std::string_view word) {
 
 }  // namespace
 
-// Every $name in an attribute is replaced by what it stands for, \$ by $. pugixml keeps the places of
-// elements.
-void XmlReader::replace_names(Node n, int depth) {
+// What the scene says of its own $names; the command line's come first.
+void XmlReader::find_defaults(Node n, int depth) {
   if (depth > 64) fail(n, "elements are nested deeper than 64", "close those that have ended");
+  for (const Node c : n.children()) {
+    if (c.name() != std::string_view("default")) {
+      find_defaults(c, depth + 1);
+      continue;
+    }
+    replace_names(c, depth);  // by those before it
+    defines_.try_emplace(c.attribute("name").value(), c.attribute("value").value());
+    used_.insert(c.attribute("name").value());
+  }
+}
+
+// pugixml keeps the places of elements.
+void XmlReader::replace_names(Node n, int depth) {
   for (pugi::xml_attribute a : n.attributes()) {
     std::string value = a.value();
-    for (std::size_t at = value.find('$'); at != std::string::npos; at = value.find('$', at)) {
-      if (at > 0 && value[at - 1] == '\\') {
-        value.erase(at - 1, 1);
-        continue;
-      }
-      std::size_t end = at + 1;
-      while (end < value.size() &&
-             (std::isalnum(static_cast<unsigned char>(value[end])) || value[end] == '_'))
-        ++end;
-      const std::string name = value.substr(at + 1, end - at - 1);
-      const auto known = defines_.find(name);
-      if (known == defines_.end()) fail(n, "nothing defines $" + name, "give -D " + name + "=VALUE");
-      used_.insert(name);
-      value.replace(at, end - at, known->second);
-      at += known->second.size();
-    }
+    const std::string missing =
+        render::replace_names(value, defines_, [&](const std::string& name) { used_.insert(name); });
+    if (!missing.empty()) fail(n, "nothing defines $" + missing, "give -D " + missing + "=VALUE");
     a.set_value(value.c_str());
   }
   for (const Node c : n.children()) {
     const bool is_default = c.name() == std::string_view("default");  // is done already
     if (c.type() == pugi::node_element && !is_default) replace_names(c, depth + 1);
+  }
+}
+
+namespace {
+
+// sampleCount: sample_count; toUV: to_uv.
+std::string with_underscores(std::string_view name) {
+  const auto small = [](char c) { return std::islower(static_cast<unsigned char>(c)) != 0; };
+  const auto large = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
+  std::string out;
+  bool inside = false;  // of capitals that follow a small letter
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool starts = i > 0 && small(name[i - 1]) && large(name[i]);
+    inside = starts || (inside && large(name[i]));
+    if (starts) out += '_';
+    out += inside ? char(std::tolower(static_cast<unsigned char>(name[i]))) : name[i];
+  }
+  return out;
+}
+
+}  // namespace
+
+// Files of Mitsuba before 2.0: the words that Mitsuba 3's own reader converts.
+void XmlReader::upgrade(Node n) {
+  if (text_.is_old(n.offset_debug()) && n != root_) {
+    for (const Node c : n.children()) {
+      pugi::xml_attribute name = c.attribute("name");
+      if (!name || c.name() == std::string_view("default")) continue;
+      name.set_value(with_underscores(name.value()).c_str());
+      if (type(n) == "diffuse" && name.value() == std::string_view("diffuse_reflectance"))
+        name.set_value("reflectance");
+    }
+    const bool moves = named(n, "uoffset") || named(n, "voffset") || named(n, "uscale") || named(n, "vscale");
+    if (moves) {
+      Node move, scale, to_uv = n.append_child("transform");
+      to_uv.append_attribute("name") = "to_uv";
+      move = to_uv.append_child("translate"), scale = to_uv.append_child("scale");
+      const auto take = [&](const char* word, Node into, const char* axis, const char* otherwise) {
+        const Node old = named(n, word);
+        into.append_attribute(axis) = old ? old.attribute("value").value() : otherwise;
+        if (old) n.remove_child(old);
+      };
+      take("uoffset", move, "x", "0"), take("voffset", move, "y", "0");
+      take("uscale", scale, "x", "1"), take("vscale", scale, "y", "1");
+    }
+  }
+  for (const Node c : n.children()) {
+    if (c.attribute("type")) upgrade(c);
   }
 }
 
@@ -88,36 +136,45 @@ void XmlReader::check_attributes(Node n) const {
   if (!known) return;  // whoever meets the element says that it is not known
   for (const pugi::xml_attribute a : n.attributes()) {
     if (!has(known->needed, a.name()) && !has(known->allowed, a.name()))
-      fail(n, "<" + std::string(tag) + "> has no attribute '" + a.name() + "'", "check its name");
+      note(n, "<" + std::string(tag) + "> has no attribute '" + a.name() + "'", "check its name");
   }
   for (const std::string_view a : known->needed) {
     if (!n.attribute(std::string(a).c_str()))
-      fail(n, "<" + std::string(tag) + "> without '" + std::string(a) + "'",
+      note(n, "<" + std::string(tag) + "> without '" + std::string(a) + "'",
            "add " + std::string(a) + "=\"...\"");
   }
   const bool whole = n.attribute("value"), x = n.attribute("x"), y = n.attribute("y"), z = n.attribute("z");
   if (has(known->allowed, "x") && whole && (x || y || z))
-    fail(n, "both 'value' and x, y, z", "keep one of the two");
+    note(n, "both 'value' and x, y, z", "keep one of the two");
   if ((tag == "point" || tag == "vector") && !whole && !(x && y && z))
-    fail(n, "<" + std::string(tag) + "> needs x, y and z", "write all three");
+    note(n, "<" + std::string(tag) + "> needs x, y and z", "write all three");
 }
 
 void XmlReader::check(Node n) const {
   check_attributes(n);
+  if (n.name() == std::string_view("alias")) {
+    const auto meant = ids_.find(text(n, "id"));
+    if (meant == ids_.end()) {
+      note(n, "no element before it has the id '" + text(n, "id") + "'", "check the id");
+    } else if (!ids_.try_emplace(text(n, "as"), meant->second).second) {
+      note(n, "a second element has the id '" + text(n, "as") + "'", "give it another");
+    }
+    return;
+  }
   const std::string id = n.attribute("id").value();
   if (!id.empty() && std::string_view(n.name()) != "ref" && !ids_.try_emplace(id, n).second)
-    fail(n, "a second element has the id '" + id + "'", "give it another");
+    note(n, "a second element has the id '" + id + "'", "give it another");
   std::set<std::string_view> names;
   for (const Node c : n.children()) {
     if (c.type() == pugi::node_pcdata || c.type() == pugi::node_cdata)
-      fail(n, "text inside <" + std::string(n.name()) + ">", "write value=\"...\"");
+      note(n, "text inside <" + std::string(n.name()) + ">", "write value=\"...\"");
     if (c.type() != pugi::node_element) continue;
     const std::string_view name = c.attribute("name").value();
     if (!name.empty() && std::string_view(c.name()) != "default" && !names.insert(name).second)
-      fail(c, "'" + std::string(name) + "' is given twice", "keep one of the two");
+      note(c, "'" + std::string(name) + "' is given twice", "keep one of the two");
     if (attributes_of(n.name()) && !n.attribute("type") && n != root_ &&
         std::string_view(n.name()) != "transform")
-      fail(c, "<" + std::string(c.name()) + "> inside <" + n.name() + ">", "close the outer one before");
+      note(c, "<" + std::string(c.name()) + "> inside <" + n.name() + ">", "close the outer one before");
     check(c);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "materials/metals.hpp"
 #include "reflectree/error.hpp"
@@ -53,8 +54,8 @@ MaterialReader::Widened MaterialReader::roughness(Node n, bool pictures) {
   } else {
     w.x.colour = w.y.colour = to_rgb(float(xml_.property(n, "alpha", .1)));
   }
-  if (!w.x.picture) r.alpha.x = w.x.colour.r;
-  if (!w.y.picture) r.alpha.y = w.y.colour.r;
+  if (!varies(w.x)) r.alpha.x = w.x.colour.r;
+  if (!varies(w.y)) r.alpha.y = w.y.colour.r;
   if (!(r.alpha.x > 0 && r.alpha.y > 0)) xml_.fail(n, "alpha is not positive", "use conductor or plastic");
   return w;
 }
@@ -99,6 +100,7 @@ PlasticParameters MaterialReader::plastic_of(Node n) {
 }
 
 ScatteringPtr MaterialReader::with_sampler(const AnyBrdf& f, const std::string& text) {
+  if (!xml_.sound()) return diffuse({});  // nothing will be rendered, and building takes its time
   const auto make = [&](const std::string& name, const char* option, const PeerSubject& subject) {
     const SamplerInfo* info = find_sampler(name);
     if (!info) {
@@ -131,25 +133,63 @@ ScatteringPtr MaterialReader::from_file(Node n) {
   return with_sampler(xml_.placed(n, [&] { return load_brdf(file); }), "");
 }
 
-std::vector<ScatteringPtr> MaterialReader::inside(Node n, int depth) {
+std::vector<ScatteringPtr> MaterialReader::inside(Node n, int depth, std::string_view texture) {
   std::vector<ScatteringPtr> found;
   for (const Node c : n.children()) {
     if (c.type() != pugi::node_element) continue;
     const Node meant = xml_.resolve(c);
     if (std::string_view(meant.name()) == "bsdf") {
       found.push_back(read(meant, depth + 1));
-    } else if (meant != c && c.attribute("name").value() != std::string_view("weight")) {
+    } else if (meant != c && (texture.empty() || c.attribute("name").value() != texture)) {
       xml_.fail(c, "refers to a <" + std::string(meant.name()) + ">", "refer to a bsdf");
     }
   }
   return found;
 }
 
+ScatteringPtr MaterialReader::only_one_inside(Node n, int depth, std::string_view texture) {
+  const auto found = inside(n, depth, texture);
+  if (found.size() != 1) xml_.fail(n, "one bsdf is needed", "put it there");
+  return found.front();
+}
+
+// normalmap and bumpmap; the latter's texture may have any name.
+ScatteringPtr MaterialReader::perturbed(Node n, int depth) {
+  const bool bumps = XmlReader::type(n) == "bumpmap";
+  Node map = bumps ? Node() : XmlReader::named(n, "normalmap");
+  for (const Node c : n.children()) {
+    if (bumps && c.type() == pugi::node_element && xml_.resolve(c).name() == std::string_view("texture"))
+      map = c;
+  }
+  if (!map)
+    xml_.fail(n, bumps ? "a bump map without a texture" : "a normal map without 'normalmap'",
+              "add the texture");
+  const std::string name = map.attribute("name").value();
+  xml_.only(n, {"bsdf", "ref", "texture", name, "flip_invalid_normals", "use_shadowing_function",
+                bumps ? "scale" : "bsdf"});
+  const NormalRules rules{xml_.flag(n, "flip_invalid_normals", true),
+                          xml_.flag(n, "use_shadowing_function", true)};
+  const Texture texture = texture_of(xml_.resolve(map));
+  ScatteringPtr inner = only_one_inside(n, depth, name);
+  if (bumps) return bump_map(texture, float(xml_.property(n, "scale", 1)), rules, std::move(inner));
+  if (texture.picture && texture.picture->channels.size() < 3)
+    xml_.fail(map, "a normal map in grey", "give a picture of red, green and blue");
+  return normal_map(texture, rules, std::move(inner));
+}
+
 ScatteringPtr MaterialReader::read(Node n, int depth) {
   if (depth > 8) xml_.fail(n, "materials refer to each other in a circle", "break the circle of ids");
   const auto known = known_.find(n.offset_debug());
-  if (known != known_.end()) return known->second;
-  return known_[n.offset_debug()] = make(n, depth);
+  if (known != known_.end()) {
+    asked_ |= attributes_of(known->second);
+    return known->second;
+  }
+  const std::uint32_t outside = std::exchange(asked_, 0);
+  auto made = xml_.attempt([&] { return make(n, depth); }, ScatteringPtr());
+  if (!made) made = diffuse({});
+  attributes_of_[made.get()] = asked_;
+  asked_ |= outside;
+  return known_[n.offset_debug()] = made;
 }
 
 ScatteringPtr MaterialReader::make(Node n, int depth) {
@@ -186,6 +226,19 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
     return dielectric(relative_ior(n, 1.5046), texture(n, "specular_reflectance", white),
                       texture(n, "specular_transmittance", white));
   }
+  if (type == "thindielectric") {
+    xml_.only(n, {"int_ior", "ext_ior", "specular_reflectance", "specular_transmittance"});
+    lets_pass_ = true;
+    return thin_dielectric(relative_ior(n, 1.5046), texture(n, "specular_reflectance", white),
+                           texture(n, "specular_transmittance", white));
+  }
+  if (type == "mask") {
+    xml_.only(n, {"bsdf", "ref", "opacity"});
+    lets_pass_ = true;
+    Texture opacity = number(n, "opacity", .5);
+    return mask(std::move(opacity), only_one_inside(n, depth, "opacity"));
+  }
+  if (type == "normalmap" || type == "bumpmap") return perturbed(n, depth);
   if (type == "measured") return from_file(n);
   if (type == "reflectree") return from_text(n);
   if (type == "twosided") {
@@ -201,7 +254,7 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
   if (type == "blendbsdf") {
     xml_.only(n, {"bsdf", "ref", "weight"});
     if (!XmlReader::named(n, "weight")) xml_.fail(n, "a blend without 'weight'", "add it, between 0 and 1");
-    const auto parts = inside(n, depth);
+    const auto parts = inside(n, depth, "weight");
     if (parts.size() != 2) xml_.fail(n, "two bsdfs are needed", "put them there");
     return blend(number(n, "weight", 0), parts[0], parts[1]);
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 
 #include "reflectree/error.hpp"
 
@@ -17,17 +16,14 @@ std::string lower(std::string s) {
 }  // namespace
 
 XmlReader::XmlReader(std::string_view xml, const std::string& path, const SceneOptions& options)
-    : xml_(xml), path_(path), options_(options), defines_(options.defines) {
-  const auto parsed = document_.load_buffer(xml_.data(), xml_.size());
-  if (!parsed) throw Error(parsed.description(), place(parsed.offset), "mend the XML");
+    : options_(options), text_(xml, path, options.defines), defines_(options.defines) {
+  const auto parsed = document_.load_buffer(text_.text().data(), text_.text().size());
+  if (!parsed) throw Error(parsed.description(), text_.place(parsed.offset), "mend the XML");
   root_ = document_.child("scene");
-  if (!root_) throw Error("no <scene>", path_, "name a Mitsuba 3 scene");
-  for (const Node n : root_.children("default")) {
-    replace_names(n, 0);  // by those before it
-    defines_.try_emplace(n.attribute("name").value(), n.attribute("value").value());
-    used_.insert(n.attribute("name").value());
-  }
+  if (!root_) throw Error("no <scene>", path, "name a Mitsuba 3 scene");
+  find_defaults(root_, 0);
   replace_names(root_, 0);
+  upgrade(root_);
   for (const auto& [name, value] : options.defines) {
     if (!used_.count(name)) throw Error("the scene does not say $" + name, path, "leave -D " + name + " out");
   }
@@ -35,7 +31,7 @@ XmlReader::XmlReader(std::string_view xml, const std::string& path, const SceneO
 }
 
 std::string XmlReader::beside(const std::string& file) const {
-  files_.push_back((std::filesystem::path(path_).parent_path() / file).string());
+  files_.push_back(text_.find(file));
   return files_.back();
 }
 
@@ -45,23 +41,15 @@ std::string XmlReader::file(Node n) const {
   return beside(word(n, "filename", ""));
 }
 
-std::string XmlReader::place(std::ptrdiff_t offset) const {
-  const std::string_view before = xml_.substr(0, std::size_t(std::max<std::ptrdiff_t>(offset, 0)));
-  const std::size_t newline = before.rfind('\n');
-  return path_ + ":" + std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ":" +
-         std::to_string(before.size() - (newline == std::string_view::npos ? 0 : newline + 1));
-}
-
 void XmlReader::fail(Node n, const std::string& what, const std::string& how) const {
-  throw Error(what, place(n.offset_debug()), how);
+  throw ElementError({what, place(n), how});
 }
 
 // The error's own place follows the element's.
 void XmlReader::rethrow(Node n, const Error& e) const {
   const std::string all = e.what();
   const std::size_t how = std::min(all.rfind("; "), all.size());
-  throw Error(all.substr(0, how), place(n.offset_debug()),
-              how < all.size() ? all.substr(how + 2) : "mend it");
+  throw ElementError({all.substr(0, how), place(n), how < all.size() ? all.substr(how + 2) : "mend it"});
 }
 
 void XmlReader::unknown(Node n) const {
@@ -80,7 +68,7 @@ void XmlReader::only(Node n, Names known) const {
         ((name.empty() || tag == "ref") && knows(tag)))
       continue;
     const std::string word(name.empty() ? tag : name);
-    fail(c, "'" + word + "' is not known in <" + n.name() + " type=\"" + type(n) + "\">", "leave it out");
+    note(c, "'" + word + "' is not known in <" + n.name() + " type=\"" + type(n) + "\">", "leave it out");
   }
 }
 

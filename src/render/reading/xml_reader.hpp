@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The words of Mitsuba's XML: properties with $names, numbers, transforms, colours. Errors name line and
-// column. A property of another kind than is asked for is an error, never the default.
+// column. A property of another kind than is asked for is an error, never the default. What is wrong is
+// noted, so that all of a scene's errors are told in one.
 #pragma once
 
 #include <initializer_list>
@@ -9,6 +10,7 @@
 
 #include "reflectree/error.hpp"
 #include "scene_colour.hpp"
+#include "scene_text.hpp"
 #include "transform.hpp"
 
 namespace reflectree::render {
@@ -23,6 +25,16 @@ inline bool within_reach(Vec3<double> p) {
 using Node = pugi::xml_node;
 using Names = std::initializer_list<std::string_view>;
 
+// What is wrong with an element.
+struct Problem {
+  std::string what, place, how;
+};
+class ElementError : public Error {
+ public:
+  explicit ElementError(Problem p) : Error(p.what, p.place, p.how), problem(std::move(p)) {}
+  Problem problem;
+};
+
 class XmlReader {
  public:
   XmlReader(std::string_view xml, const std::string& path, const SceneOptions& options);
@@ -34,10 +46,30 @@ class XmlReader {
   // The one that `n` names as "filename".
   std::string file(Node n) const;
   // What `read` returns; its errors get the element's place.
+  // What `read` returns; an error is noted and `otherwise` stands in for it: nothing is rendered then.
+  template <class Read, class T>
+  T attempt(const Read& read, T otherwise) const {
+    try {
+      return read();
+    } catch (const ElementError& e) {
+      note(e.problem);
+      return otherwise;
+    }
+  }
+  bool sound() const { return problems_.empty(); }
+  // Throws what was noted, in one Error.
+  void throw_problems() const;
+  // A word that is understood, and changes no pixel of ours.
+  void idle(Node n) const;
+  // A sentence about all of those, or "".
+  std::string idle_words() const;
+
   template <class Read>
   auto placed(Node n, const Read& read) const {
     try {
       return read();
+    } catch (const ElementError&) {
+      throw;
     } catch (const Error& e) {
       rethrow(n, e);
     }
@@ -71,7 +103,11 @@ class XmlReader {
   LocalFrame<float> rotation(Node n, const char* name) const;
 
  private:
-  std::string place(std::ptrdiff_t offset) const;
+  std::string place(Node n) const { return text_.place(n.offset_debug()); }
+  void note(const Problem& problem) const;
+  void note(Node n, const std::string& what, const std::string& how) const { note({what, place(n), how}); }
+  void find_defaults(Node n, int depth);
+  void upgrade(Node n);
   [[noreturn]] void rethrow(Node n, const Error& e) const;
   void replace_names(Node n, int depth);
   void check(Node n) const;  // attributes, names and ids of all that is in it
@@ -81,15 +117,16 @@ class XmlReader {
   Matrix operation(Node op) const;
   std::uint64_t hash(Node n, std::uint64_t h) const;
 
-  std::string_view xml_;
-  const std::string& path_;
   const SceneOptions& options_;
-  std::map<std::string, std::string> defines_;
+  SceneText text_;
+  Defines defines_;
   std::set<std::string> used_;               // names of `defines_`
   mutable std::map<std::string, Node> ids_;  // elements by their id
   pugi::xml_document document_;
   Node root_;
   mutable std::vector<std::string> files_;
+  mutable std::vector<Problem> problems_;
+  mutable std::vector<std::pair<std::string, std::string>> idle_;  // words and places
 };
 
 }  // namespace reflectree::render

@@ -14,37 +14,62 @@ namespace {
 
 class SceneReader {
  public:
-  SceneReader(const XmlReader& xml, const Host& host) : xml_(xml), materials_(xml, host) {}
+  SceneReader(const XmlReader& xml, const Host& host)
+      : xml_(xml), materials_(xml, host), shapes_(xml, materials_, scene_) {}
 
   Scene read(const std::string& path) {
     scene_.max_depth = -1;  // what Mitsuba does without an integrator
-    xml_.child(xml_.root(), "integrator");
+    xml_.attempt([&] { return xml_.child(xml_.root(), "integrator"); }, Node());
+    bool seen = false;
     for (const Node n : xml_.root().children()) {
       if (n.type() != pugi::node_element) continue;
-      const std::string_view tag = n.name();
-      if (tag == "integrator")
-        read_integrator(n);
-      else if (tag == "sensor")  // the first one takes the picture, as in Mitsuba
-        scene_.width == 0 ? read_sensor(xml_, n, scene_) : void();
-      else if (tag == "shape")
-        read_shape(xml_, materials_, n, scene_);
-      else if (tag == "emitter")
-        read_emitter(n);
-      else if (tag != "default" && tag != "bsdf" && tag != "texture")  // those are read where they are named
-        xml_.fail(n, "<" + std::string(tag) + "> is not known here", "leave it out");
+      const bool first_sensor = n.name() == std::string_view("sensor") && !seen;
+      seen = seen || first_sensor;
+      xml_.attempt([&] { return read_part(n, first_sensor), true; }, false);
     }
-    if (scene_.width == 0) throw Error("no <sensor>", path, "add a perspective sensor");
+    if (volumes_ && materials_.lets_pass() &&
+        !(scene_.point_lights.empty() && scene_.spot_lights.empty() && scene_.directional_lights.empty()))
+      xml_.attempt(
+          [&]() -> bool {
+            xml_.fail(volumes_, "lamps of a point or a direction do not shine through masks and panes here",
+                      "write type=\"path\", which shows the same in Mitsuba");
+          },
+          false);
+    xml_.throw_problems();
+    if (!seen) throw Error("no <sensor>", path, "add a perspective sensor");
+    if (const std::string words = xml_.idle_words(); !words.empty())
+      scene_.notes.push_back(path + ": " + words);
     return std::move(scene_);
   }
 
  private:
+  // The first sensor takes the picture, as in Mitsuba.
+  void read_part(Node n, bool first_sensor) {
+    const std::string_view tag = n.name();
+    if (tag == "integrator")
+      read_integrator(n);
+    else if (tag == "sensor")
+      first_sensor ? read_sensor(xml_, n, scene_) : void();
+    else if (tag == "shape")
+      shapes_.read(n);
+    else if (tag == "emitter")
+      read_emitter(n);
+    else if (tag != "default" && tag != "alias" && tag != "bsdf" &&
+             tag != "texture")  // read where they are named
+      xml_.fail(n, "<" + std::string(tag) + "> is not known here", "leave it out");
+  }
+
   void read_integrator(Node n) {
-    const auto method = method_of(XmlReader::type(n));
+    const std::string type = XmlReader::type(n);
+    if (type == "moment" || type == "aov") return read_around(n);
+    // Without a medium, which is refused where it stands, Mitsuba's volume integrators are path tracers.
+    const bool in_volumes = type == "volpath" || type == "volpathmis";
+    if (in_volumes) volumes_ = n;
+    const auto method = in_volumes ? Transport::Method::path : method_of(type);
     if (!method) xml_.unknown(n);
     Transport& t = scene_.transport;
     t.method = *method;
-    if (xml_.flag(n, "hide_emitters", false))
-      xml_.fail(XmlReader::named(n, "hide_emitters"), "emitters cannot be hidden here", "write false");
+    scene_.hide_lamps = xml_.flag(n, "hide_emitters", false);
     if (t.method == Transport::Method::direct) {
       xml_.only(n, {"shading_samples", "hide_emitters"});
       t.split = xml_.integer(n, "shading_samples", 0);
@@ -66,6 +91,15 @@ class SceneReader {
     scene_.max_depth = xml_.integer(n, "max_depth", -1);
     scene_.rr_depth = xml_.integer(n, "rr_depth", 5);
     if (scene_.rr_depth < 1) xml_.fail(n, "rr_depth is not positive", "write 1 or more");
+  }
+
+  // Further statistics about the picture of the integrator inside, which is all that is computed.
+  void read_around(Node n) {
+    xml_.only(n, {"integrator", "aovs"});
+    xml_.idle(XmlReader::named(n, "aovs"));
+    const Node inner = xml_.child(n, "integrator");
+    if (!inner) xml_.fail(n, "no integrator inside, and nothing else has a picture here", "put one there");
+    read_integrator(inner);
   }
 
   void set_environment(Node n, Environment e) {
@@ -100,6 +134,19 @@ class SceneReader {
       const auto place = apply_double(m, xml_.point(n, "position", {}), 1);
       if (!within_reach(place)) xml_.fail(n, "the light is beyond 1e15", "use larger units");
       scene_.point_lights.push_back({to_float(place), xml_.colour(n, "intensity", white, ColourOf::light)});
+    } else if (type == "spot") {
+      xml_.only(n, {"intensity", "texture", "cutoff_angle", "beam_width", "to_world"});
+      const double cutoff = xml_.property(n, "cutoff_angle", 20),
+                   beam = xml_.property(n, "beam_width", .75 * cutoff);
+      if (!(cutoff > 0 && cutoff < 90 && beam >= 0 && beam <= cutoff))
+        xml_.fail(n, "angles that are not 0 <= beam_width <= cutoff_angle < 90", "mend them");
+      const auto radians = [](double degrees) { return float(degrees * pi_v<double> / 180); };
+      scene_.spot_lights.push_back({apply(m, {}, 1), xml_.rotation(n, "to_world"),
+                                    xml_.colour(n, "intensity", white, ColourOf::light), radians(beam),
+                                    radians(cutoff), materials_.emission(n, "texture")});
+      if (XmlReader::named(n, "texture") && !scene_.spot_lights.back().picture)
+        xml_.fail(XmlReader::named(n, "texture"), "a spot light's texture is a picture",
+                  "write one colour as 'intensity'");
     } else if (type == "directional") {
       xml_.only(n, {"direction", "irradiance", "to_world"});
       either(n, "direction");
@@ -115,6 +162,8 @@ class SceneReader {
   const XmlReader& xml_;
   MaterialReader materials_;
   Scene scene_;
+  ShapeReader shapes_;
+  Node volumes_;  // an integrator that looks for volumes
 };
 
 }  // namespace
@@ -131,7 +180,7 @@ std::optional<Transport::Method> method_of(std::string_view name) {
 std::optional<PointSet::Kind> points_of(std::string_view name) {
   using Kind = PointSet::Kind;
   if (name == "independent") return Kind::independent;
-  if (name == "stratified") return Kind::stratified;
+  if (name == "stratified" || name == "multijitter" || name == "orthogonal") return Kind::stratified;
   if (name == "sobol" || name == "ldsampler") return Kind::sobol;
   return std::nullopt;
 }

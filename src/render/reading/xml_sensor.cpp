@@ -43,6 +43,8 @@ void read_film(const XmlReader& xml, Node n, Scene& scene) {
   want(xml, n, "file_format", {"openexr", "exr"});
   want(xml, n, "component_format", {"float32", "float16"});
   xml.flag(n, "banner", false), xml.flag(n, "compensate", false);
+  for (const char* word : {"pixel_format", "file_format", "component_format", "banner", "compensate"})
+    xml.idle(XmlReader::named(n, word));
   read_filter(xml, xml.child(n, "rfilter"), scene.filter);
   scene.filter.beyond = xml.flag(n, "sample_border", false);
   const int width = xml.integer(n, "width", 768), height = xml.integer(n, "height", 576);
@@ -55,7 +57,11 @@ void read_points(const XmlReader& xml, Node n, Scene& scene) {
   if (!n) return;
   const auto points = points_of(XmlReader::type(n));
   if (!points) xml.unknown(n);
-  xml.only(n, {"sample_count", "seed"});  // the seed is the command's
+  xml.only(n, {"sample_count", "seed", "jitter"});
+  xml.integer(n, "seed", 0);  // the command's counts
+  if (!xml.flag(n, "jitter", true))
+    xml.fail(XmlReader::named(n, "jitter"), "points without jitter are not drawn here", "write true");
+  for (const char* word : {"seed", "jitter"}) xml.idle(XmlReader::named(n, word));
   scene.points.kind = *points;
   scene.samples = xml.integer(n, "sample_count", 16);
   if (!(scene.samples >= 1)) xml.fail(n, "sample_count is not positive", "give a positive number");
@@ -92,13 +98,19 @@ double tangent(const XmlReader& xml, Node n, double aspect) {
 
 void read_sensor(const XmlReader& xml, Node n, Scene& scene) {
   if (XmlReader::type(n) != "perspective") xml.unknown(n);
-  xml.only(n, {"fov", "fov_axis", "focal_length", "near_clip", "far_clip", "focus_distance", "to_world",
-               "principal_point_offset_x", "principal_point_offset_y", "sampler", "film"});
+  xml.only(n, {"fov", "fov_axis", "focal_length", "near_clip", "far_clip", "focus_distance", "shutter_open",
+               "shutter_close", "to_world", "principal_point_offset_x", "principal_point_offset_y", "sampler",
+               "film"});
   const Node film = xml.child(n, "film");
   if (!film) xml.fail(n, "a sensor without a film", "add an hdrfilm");
-  read_film(xml, film, scene);
-  read_points(xml, xml.child(n, "sampler"), scene);
-  xml.property(n, "focus_distance", 0);  // of a lens; a pinhole has none
+  scene.width = scene.height = 1;
+  xml.attempt([&] { return read_film(xml, film, scene), true; }, false);
+  xml.attempt([&] { return read_points(xml, xml.child(n, "sampler"), scene), true; }, false);
+  for (const char* word :
+       {"focus_distance", "shutter_open", "shutter_close"}) {  // a pinhole, and nothing moves
+    xml.property(n, word, 0);
+    xml.idle(XmlReader::named(n, word));
+  }
   const double aspect = double(scene.width) / scene.height, t = tangent(xml, n, aspect);
   const Matrix m = xml.transform(XmlReader::named(n, "to_world"));
   const LocalFrame<float> frame = xml.rotation(n, "to_world");

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "xml_materials.hpp"
 
 namespace reflectree::render {
-
-namespace {
-
-// ITU-R BT.709, with Mitsuba's digits.
-float luminance(Rgb c) { return .212671f * c.r + .715160f * c.g + .072169f * c.b; }
-
-}  // namespace
 
 // The part of a transform that turns (u, v): Mitsuba leaves out the third row and column.
 std::array<float, 6> MaterialReader::to_uv(Node t) const {
@@ -59,9 +54,44 @@ Texture MaterialReader::texture(Node n, const char* name, Rgb otherwise) {
   }
   if (std::string_view(t.name()) != "texture")
     xml_.fail(found, "'" + std::string(name) + "' refers to a <" + t.name() + ">", "refer to a texture");
-  if (XmlReader::type(t) == "bitmap") return bitmap(t);
-  if (XmlReader::type(t) == "checkerboard") return checkerboard(t);
-  xml_.unknown(t);
+  return texture_of(t);
+}
+
+Texture MaterialReader::texture_of(Node t) {
+  const auto read = [&] {
+    if (XmlReader::type(t) == "bitmap") return bitmap(t);
+    if (XmlReader::type(t) == "checkerboard") return checkerboard(t);
+    if (XmlReader::type(t) == "mesh_attribute") return mesh_attribute(t);
+    xml_.unknown(t);
+  };
+  return xml_.attempt(read, Texture{});
+}
+
+Texture MaterialReader::mesh_attribute(Node t) {
+  xml_.only(t, {"name", "scale"});
+  const std::string name = xml_.word(t, "name", "");
+  if (name.rfind("vertex_", 0) != 0 && name.rfind("face_", 0) != 0)
+    xml_.fail(t, "a mesh's attribute is called vertex_... or face_..., not '" + name + "'", "mend 'name'");
+  const auto known = std::find(attribute_names_.begin(), attribute_names_.end(), name);
+  Texture made;
+  made.attribute = int(known - attribute_names_.begin());
+  made.scale = float(xml_.property(t, "scale", 1));
+  if (known == attribute_names_.end()) {
+    if (attribute_names_.size() == max_attributes)
+      xml_.fail(t, "more than four attributes of meshes in a scene", "leave some out");
+    attribute_names_.push_back(name);
+  }
+  asked_ |= 1U << unsigned(made.attribute);
+  return made;
+}
+
+std::optional<Texture> MaterialReader::emission(Node n, const char* name) {
+  const Node found = XmlReader::named(n, name);
+  if (!found || xml_.resolve(found).name() != std::string_view("texture")) return std::nullopt;
+  const Texture made = texture_of(xml_.resolve(found));
+  if (made.attribute >= 0)
+    xml_.fail(found, "lamps do not shine by attributes of meshes here", "give a picture");
+  return made;
 }
 
 Texture MaterialReader::number(Node n, const char* name, double otherwise) {
@@ -73,6 +103,8 @@ Texture MaterialReader::number(Node n, const char* name, double otherwise) {
     return t;
   }
   t = texture(n, name, {});
+  if (t.attribute >= 0) t.grey = true;
+  if (t.attribute >= 0) return t;
   const bool squares =
       tag != "rgb" && tag != "spectrum" && XmlReader::type(xml_.resolve(c)) == "checkerboard";
   const auto mean = [](Rgb colour) { return (colour.r + colour.g + colour.b) / 3; };

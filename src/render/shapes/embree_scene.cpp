@@ -81,6 +81,24 @@ bool sphere_distance(const Sphere& s, Point o, Direction d, float near, float fa
   return false;
 }
 
+// The same for the line's part where z is in [0, 1], in the cylinder's coordinates.
+bool cylinder_distance(const Cylinder& c, Point o, Direction d, float near, float far, float& distance) {
+  const Vec3<double> from = to_double(o) - c.base, along = to_double(d);
+  const double over_r2 = 1 / dot(c.s, c.s), over_l2 = 1 / dot(c.axis, c.axis);
+  const double ox = dot(from, c.s) * over_r2, oy = dot(from, c.t) * over_r2, oz = dot(from, c.axis) * over_l2;
+  const double dx = dot(along, c.s) * over_r2, dy = dot(along, c.t) * over_r2,
+               dz = dot(along, c.axis) * over_l2;
+  const double over = 1 / (dx * dx + dy * dy), b = -(ox * dx + oy * dy) * over;
+  const double fx = ox + b * dx, fy = oy + b * dy, rest = 1 - fx * fx - fy * fy;
+  if (!(rest >= 0)) return false;
+  const double chord = sqrt(rest * over);
+  for (const double t : {b - chord, b + chord}) {
+    const double z = oz + t * dz;
+    if (t > double(near) && t < double(far) && z >= 0 && z <= 1) return distance = float(t), true;
+  }
+  return false;
+}
+
 const Flat& flat(const Scene& scene, Hit::Kind kind, unsigned index) {
   return kind == Hit::Kind::rectangle ? scene.rectangles[index] : scene.disks[index];
 }
@@ -93,6 +111,8 @@ bool distance_to(const Scene& scene, unsigned index, RTCRayN* r, unsigned n, uns
   const float near = RTCRayN_tnear(r, n, i), far = RTCRayN_tfar(r, n, i);
   if constexpr (kind == Hit::Kind::sphere) {
     return sphere_distance(scene.spheres[index], o, d, near, far, distance);
+  } else if constexpr (kind == Hit::Kind::cylinder) {
+    return cylinder_distance(scene.cylinders[index], o, d, near, far, distance);
   } else {
     const auto [t, x, y] = crossing(flat(scene, kind, index), o, d);
     const bool within = kind == Hit::Kind::rectangle ? in_rectangle(x, y) : in_disk(x, y);
@@ -109,7 +129,7 @@ REFLECTREE_INLINE void put(std::optional<Hit>& out, const Scene& scene, const Ra
   hit.kind = Hit::Kind(geometry), hit.index = primitive, hit.distance = distance;
   if (hit.kind == Hit::Kind::triangle) {
     hit.u = double(u), hit.v = double(v);
-  } else if (hit.kind != Hit::Kind::sphere) {
+  } else if (hit.kind != Hit::Kind::sphere && hit.kind != Hit::Kind::cylinder) {
     const auto [t, x, y] = crossing(flat(scene, hit.kind, hit.index), ray.origin, ray.direction);
     hit.distance = float(t), hit.u = x, hit.v = y;
   }
@@ -123,6 +143,11 @@ void bounds(const RTCBoundsFunctionArguments* a) {
   if constexpr (kind == Hit::Kind::sphere) {
     const Sphere& s = scene.spheres[a->primID];
     middle = s.centre, reach = {s.radius, s.radius, s.radius};
+  } else if constexpr (kind == Hit::Kind::cylinder) {
+    const Cylinder& c = scene.cylinders[a->primID];
+    const auto far = [](double s, double t, double l) { return std::hypot(s, t) + std::abs(l) / 2; };
+    middle = c.base + .5 * c.axis;
+    reach = {far(c.s.x, c.t.x, c.axis.x), far(c.s.y, c.t.y, c.axis.y), far(c.s.z, c.t.z, c.axis.z)};
   } else {
     const Flat& f = flat(scene, kind, a->primID);
     const auto far = [](double s, double t) {
@@ -212,6 +237,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : shapes_(scene) {
   attach_ours<Hit::Kind::sphere>(device, world, scene, scene.spheres.size());
   attach_ours<Hit::Kind::rectangle>(device, world, scene, scene.rectangles.size());
   attach_ours<Hit::Kind::disk>(device, world, scene, scene.disks.size());
+  attach_ours<Hit::Kind::cylinder>(device, world, scene, scene.cylinders.size());
   rtcCommitScene(world);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rectangles and disks: where rays cross their planes, how large they are, their points.
+// Rectangles and disks: where rays cross their planes, how large they are, their points. And cylinders'.
 #pragma once
 
 #include "reflectree/math/fast_functions.hpp"
@@ -30,6 +30,14 @@ inline Point point_on(const Flat& flat, double x, double y) {
 
 inline double rectangle_area(const Flat& flat) { return 4 * length(cross(flat.s, flat.t)); }
 inline double disk_area(const Flat& flat) { return pi_v<double> * length(cross(flat.s, flat.t)); }
+
+inline double cylinder_area(const Cylinder& c) { return 2 * pi_v<double> * length(c.s) * length(c.axis); }
+// A uniform point's place: (x, y) on the unit circle, and z.
+inline Vec3<double> in_cylinder(PathBits& u) {
+  const double z = to_unit_double(u());
+  const auto [x, y] = on_circle(to_unit_float(u()));
+  return {double(x), double(y), z};
+}
 
 // Uniform coordinates of a rectangle's and of a disk's points.
 inline Vec2<double> in_rectangle(PathBits& u) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "flat.hpp"
@@ -9,6 +10,8 @@
 namespace reflectree::render {
 
 namespace {
+
+Direction to_floats(Vec3<double> v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 Interaction on_triangle(const Scene& scene, const Hit& hit) {
   const Triangle& t = scene.triangles[hit.index];
@@ -83,8 +86,6 @@ Tangents along_sphere(const Sphere& s, const Interaction& on) {
   return {(2 * pi * r) * to_world(s.axes, {-local.y, local.x, 0}), (pi * r) * to_world(s.axes, down)};
 }
 
-Direction to_floats(Vec3<double> v) { return {float(v.x), float(v.y), float(v.z)}; }
-
 // u grows outwards, v round.
 Tangents along_disk(const Flat& d, const Hit& hit) {
   const double r = std::hypot(hit.u, hit.v), over = r > 0 ? 1 / r : 0;
@@ -92,7 +93,47 @@ Tangents along_disk(const Flat& d, const Hit& hit) {
           to_floats(2 * pi_v<double> * (hit.u * d.t - hit.v * d.s))};
 }
 
+// Where a point on or near the cylinder is, by s and t, on the unit circle, and z.
+Vec3<double> on_unit(const Cylinder& c, Vec3<double> at) {
+  const Vec3<double> from = at - c.base;
+  const double r2 = dot(c.s, c.s), x = dot(from, c.s) / r2, y = dot(from, c.t) / r2,
+               over = 1 / std::hypot(x, y);
+  return {x * over, y * over, clamp(dot(from, c.axis) / dot(c.axis, c.axis), 0., 1.)};
+}
+
+Interaction on_cylinder(const Cylinder& c, Point about) {
+  const Vec3<double> local = on_unit(c, to_double(about)), out = local.x * c.s + local.y * c.t;
+  const Direction n = to_floats((c.inwards ? -1 : 1) * normalize(out));
+  const float turn = std::atan2(float(local.y), float(local.x)) / (2 * pi);
+  return {to_floats(c.base + out + local.z * c.axis),
+          n,
+          n,
+          {turn < 0 ? turn + 1 : turn, float(local.z)},
+          c.surface};
+}
+
+Tangents along_cylinder(const Cylinder& c, const Interaction& on) {
+  const Vec3<double> local = on_unit(c, to_double(on.at));
+  return {to_floats(2 * pi_v<double> * (local.x * c.t - local.y * c.s)), to_floats(c.axis)};
+}
+
 }  // namespace
+
+std::array<Rgb, max_attributes> attributes_at(const Scene& scene, const Hit& hit) {
+  std::array<Rgb, max_attributes> found{};
+  if (hit.kind != Hit::Kind::triangle) return found;
+  const Triangle& t = scene.triangles[hit.index];
+  const Surface& surface = scene.surfaces[t.surface];
+  const auto u = float(hit.u), v = float(hit.v);
+  for (std::size_t i = 0; i < std::min(found.size(), surface.attributes.size()); ++i) {
+    const auto& [of_triangles, values] = surface.attributes[i];
+    const auto at = [&](std::size_t k) { return k < values.size() ? values[k] : Rgb{}; };
+    const auto corner = [&](std::size_t k) { return at(t.corner[k] - surface.first_vertex); };
+    found[i] = of_triangles ? at(hit.index - surface.first_triangle)
+                            : (1 - u - v) * corner(0) + u * corner(1) + v * corner(2);
+  }
+  return found;
+}
 
 Tangents tangents_at(const Scene& scene, const Hit& hit, const Interaction& on) {
   switch (hit.kind) {
@@ -104,6 +145,8 @@ Tangents tangents_at(const Scene& scene, const Hit& hit, const Interaction& on) 
     }
     case Hit::Kind::disk:
       return along_disk(scene.disks[hit.index], hit);
+    case Hit::Kind::cylinder:
+      return along_cylinder(scene.cylinders[hit.index], on);
     default:
       return along_sphere(scene.spheres[hit.index], on);
   }
@@ -125,6 +168,8 @@ Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Dir
       return on_rectangle(scene.rectangles[hit.index], hit);
     case Hit::Kind::disk:
       return on_disk(scene.disks[hit.index], hit);
+    case Hit::Kind::cylinder:
+      return on_cylinder(scene.cylinders[hit.index], origin + hit.distance * direction);
     default:
       return on_sphere(scene.spheres[hit.index], origin + hit.distance * direction);
   }

@@ -121,6 +121,52 @@ float* field(Vertex& v, const std::string& name, const std::pair<std::string, st
   return found == std::end(all) ? nullptr : found->second;
 }
 
+// Further values as Mitsuba names them: r, g, b or red, green, blue are ..._color; three of one stem and of
+// _x _y _z, _r _g _b, _0 _1 _2 or _1 _2 _3 go together under it, and the first of those alone is a number.
+struct Extra {
+  std::vector<std::size_t> fields;  // of the element's properties: one or three
+  MeshAttribute values;
+};
+std::vector<Extra> extras_of(const Element& e) {
+  std::vector<Extra> found;
+  const auto place = [&](const std::string& name) {
+    const auto at = std::find_if(e.properties.begin(), e.properties.end(),
+                                 [&](const Property& p) { return p.name == name && p.count.empty(); });
+    return std::size_t(at - e.properties.begin());
+  };
+  const bool faces = e.name == "face";
+  const std::string prefix = faces ? "face_" : "vertex_";
+  std::vector<bool> used(e.properties.size());
+  const auto three = [&](const std::string& name, const std::string& a, const std::string& b,
+                         const std::string& c) {
+    const std::size_t at[] = {place(a), place(b), place(c)};
+    for (const std::size_t i : at) {
+      if (i == e.properties.size() || used[i]) return;
+    }
+    for (const std::size_t i : at) used[i] = true;
+    found.push_back({{at[0], at[1], at[2]}, {prefix + name, faces, {}}});
+  };
+  three("color", "r", "g", "b"), three("color", "red", "green", "blue");
+  for (std::size_t i = 0; i < e.properties.size(); ++i) {
+    const std::string& name = e.properties[i].name;
+    const std::size_t line = name.rfind('_');
+    if (line == std::string::npos || line + 2 != name.size()) continue;
+    const std::string stem = name.substr(0, line), own = stem + "_";
+    for (const char* ends : {"xyz", "rgb", "012", "123"}) {
+      if (name[line + 1] == ends[0]) three(stem, own + ends[0], own + ends[1], own + ends[2]);
+    }
+  }
+  for (std::size_t i = 0; i < e.properties.size(); ++i) {
+    const std::string& name = e.properties[i].name;
+    const std::size_t line = name.rfind('_');
+    if (used[i] || line == std::string::npos || line + 2 != name.size()) continue;
+    if (!e.properties[i].count.empty() || std::string("xr01").find(name[line + 1]) == std::string::npos)
+      continue;
+    found.push_back({{i}, {prefix + name.substr(0, line), faces, {}}});
+  }
+  return found;
+}
+
 void add_face(Mesh& mesh, const std::vector<double>& corners, const std::string& path) {
   for (const double c : corners) {
     if (!(c >= 0 && c < double(mesh.vertices.size()))) fail("a corner that does not exist", path);
@@ -148,11 +194,17 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool f
     }
     if (e.name == "face" && has(e, "texcoord"))
       throw Error("texture coordinates of faces are not read", path, "export those of vertices");
+    std::vector<Extra> extras;
+    if (e.name == "vertex" || e.name == "face") extras = extras_of(e);
+    std::vector<float> fields(e.properties.size());
     for (std::uint64_t i = 0; i < e.count; ++i) {
       Vertex vertex;
-      for (const Property& p : e.properties) {
+      const std::size_t triangles = mesh.triangles.size();
+      for (std::size_t k = 0; k < e.properties.size(); ++k) {
+        const Property& p = e.properties[k];
         if (p.count.empty()) {
           const double v = numbers.next(p.type);
+          fields[k] = float(v);
           float* at = e.name == "vertex" ? field(vertex, p.name, uv) : nullptr;
           if (at) *at = float(v);
           continue;
@@ -160,12 +212,21 @@ Mesh read_ply(ByteView bytes, const std::string& path, bool face_normals, bool f
         const double count = numbers.next(p.count);
         if (!(count >= 0 && count <= double(bytes.size()))) fail("a list of impossible length", path);
         list.clear();
-        for (double k = 0; k < count; ++k) list.push_back(numbers.next(p.type));
+        for (double n = 0; n < count; ++n) list.push_back(numbers.next(p.type));
         if (e.name == "face" && p.name.rfind("vertex_ind", 0) == 0) add_face(mesh, list, path);
       }
       if (flip_v) vertex.uv.y = 1 - vertex.uv.y;
       if (e.name == "vertex") mesh.vertices.push_back(vertex);
+      for (Extra& x : extras) {
+        const Rgb v = x.fields.size() == 1
+                          ? to_rgb(fields[x.fields[0]])
+                          : Rgb{fields[x.fields[0]], fields[x.fields[1]], fields[x.fields[2]]};
+        if (!std::isfinite(v.r + v.g + v.b)) fail("'" + x.values.name + "' is not finite", path);
+        x.values.values.insert(x.values.values.end(),
+                               x.values.of_triangles ? mesh.triangles.size() - triangles : 1, v);
+      }
     }
+    for (Extra& x : extras) mesh.attributes.push_back(std::move(x.values));
   }
   const auto has_faces = [](const Element& e) { return e.name == "face" && e.count > 0; };
   if (std::none_of(header.elements.begin(), header.elements.end(), has_faces)) {

@@ -25,7 +25,17 @@ class Emission {
 
  private:
   struct Source {
-    enum class Kind { triangle, sphere, rectangle, disk, point, directional, environment } kind;
+    enum class Kind {
+      triangle,
+      sphere,
+      rectangle,
+      disk,
+      cylinder,
+      point,
+      spot,
+      directional,
+      environment
+    } kind;
     std::uint32_t index;
   };
   void enclose();

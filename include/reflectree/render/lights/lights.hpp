@@ -38,13 +38,15 @@ class Lights {
     Direction ab, ac, normal;
   };
   struct Light {
-    enum class Kind { mesh, sphere, rectangle, disk, point, directional, environment } kind;
+    enum class Kind { mesh, sphere, rectangle, disk, cylinder, point, spot, directional, environment } kind;
     std::uint32_t index;  // among its kind; of a mesh, its surface
     Rgb radiance;         // of surfaces
     float density;        // of their points, per area, times share_
     std::vector<Part> parts;
     std::vector<double> cdf;  // of their areas
   };
+  // Of a lamp that is not alike all over, where it was drawn.
+  void look_up(const Hit& hit, Point at, std::optional<LightSample>& s) const;
   const Light& chosen(PathBits& u) const;
   void sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's shapes in Embree 3, robust; spheres, rectangles and disks are ours. Nothing else knows Embree.
+// The scene's shapes in Embree 3, robust; all but triangles are ours. Nothing else knows Embree.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,7 @@
 namespace reflectree::render {
 
 struct Hit {
-  enum class Kind : std::uint8_t { triangle, sphere, rectangle, disk } kind;
+  enum class Kind : std::uint8_t { triangle, sphere, rectangle, disk, cylinder } kind;
   std::uint32_t index;
   float distance;
   double u, v;  // a triangle's barycentric weights of its second and third corner; a flat shape's x and y
@@ -55,6 +55,8 @@ inline std::uint32_t surface_of(const Scene& scene, const Hit& hit) {
       return scene.spheres[hit.index].surface;
     case Hit::Kind::rectangle:
       return scene.rectangles[hit.index].surface;
+    case Hit::Kind::cylinder:
+      return scene.cylinders[hit.index].surface;
     default:
       return scene.disks[hit.index].surface;
   }
@@ -66,6 +68,8 @@ Interaction interaction_at(const Scene& scene, const Hit& hit, Point origin, Dir
 struct Tangents {
   Direction du, dv;
 };
+// What the mesh says there, by Texture::attribute.
+std::array<Rgb, max_attributes> attributes_at(const Scene& scene, const Hit& hit);
 Tangents tangents_at(const Scene& scene, const Hit& hit, const Interaction& on);
 // x along `du`, made perpendicular to `normal`; any frame where du has no such part. As in Mitsuba, y does
 // not turn with v: the frame is right-handed.
