@@ -72,7 +72,8 @@ constexpr const char* glossy_text =
     "  return vec3(0.1 + lobe, 0.05 + lobe, 0.02 + 0.5 * lobe); }\n"
     // Hash Functions for GPU Rendering (Jarzynski and Olano 2020), pcg4d.
     "uvec4 words_of(uvec4 v) { v = v * 1664525u + 1013904223u;\n"
-    "  v += v.yzxy * v.wxyz; v ^= v >> 16; v += v.yzxy * v.wxyz; return v; }\n";
+    "  v.x += v.y * v.w; v.y += v.z * v.x; v.z += v.x * v.y; v.w += v.y * v.z; v ^= v >> 16;\n"
+    "  v.x += v.y * v.w; v.y += v.z * v.x; v.z += v.x * v.y; v.w += v.y * v.z; return v; }\n";
 
 // A compute shader over `count` items: what `body` writes to results[i], 8 floats, i < count.
 class Shader {
@@ -180,10 +181,8 @@ struct Loaded {
 // What the shader's hash gives for an item.
 std::array<std::uint32_t, 4> words_of(std::array<std::uint32_t, 4> v) {
   for (std::uint32_t& x : v) x = x * 1664525U + 1013904223U;
-  // v += v.yzxy * v.wxyz, component by component from the old values.
   const auto mix = [&v] {
-    const auto o = v;
-    v = {o[0] + o[1] * o[3], o[1] + o[2] * o[0], o[2] + o[0] * o[1], o[3] + o[1] * o[2]};
+    v[0] += v[1] * v[3], v[1] += v[2] * v[0], v[2] += v[0] * v[1], v[3] += v[1] * v[2];
   };
   mix();
   for (std::uint32_t& x : v) x ^= x >> 16U;
