@@ -19,6 +19,7 @@ void add_sample(CLI::App& app, Context& context, Run& run);
 void add_verify(CLI::App& app, Context& context, Run& run);
 void add_draw(CLI::App& app, Context& context, Run& run);
 void add_bake(CLI::App& app, Context& context, Run& run);
+void add_export(CLI::App& app, Context& context, Run& run);
 void add_compare(CLI::App& app, Context& context, Run& run);
 void add_render(CLI::App& app, Context& context, Run& run);
 void add_image_compare(CLI::App& app, Context& context, Run& run);

@@ -20,7 +20,7 @@ import sys
 
 from house_rules import files
 
-ROOTS = ("src", "include", "tests", "docs", "tools", "bench", "apps", "examples", "cmake", "scenes")
+ROOTS = ("src", "include", "tests", "docs", "tools", "bench", "apps", "bindings", "runtime", "examples", "cmake", "scenes")
 BASES = ("", "include", "include/reflectree", "src")  # where a header may be named from
 SOURCE = (".hpp", ".cpp", ".py", ".cmake", ".inc")
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(([^()\s]+)\)")
