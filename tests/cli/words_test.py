@@ -7,7 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, environment
 
-SUBCOMMANDS = ["list", "build", "info", "eval", "sample", "verify", "draw", "bake", "demo"]
+SUBCOMMANDS = ["list", "build", "info", "eval", "sample", "verify", "doctor", "draw", "bake", "demo"]
 
 
 def on_terminal(args, **changes):
