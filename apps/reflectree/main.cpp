@@ -11,6 +11,10 @@
 #include "reflectree/formats/format_table.hpp"
 #include "reflectree/text/edit_distance.hpp"
 
+namespace reflectree::cli {
+void add_doctor(CLI::App& app, Context& context, Run& run);
+}
+
 namespace {
 
 using namespace reflectree;
@@ -88,8 +92,9 @@ int dispatch(int argc, char** argv) {
   add_globals(app, context);
   app.footer(footer);
   Run run;
-  for (const auto add : {add_list, add_build, add_info, add_eval, add_sample, add_verify, add_draw, add_bake,
-                         add_export, add_compare, add_render, add_image_compare, add_demo}) {
+  for (const auto add :
+       {add_list, add_build, add_info, add_eval, add_sample, add_verify, add_doctor, add_draw, add_bake,
+        add_export, add_compare, add_render, add_image_compare, add_demo}) {
     add(app, context, run);
   }
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/verify/bins.hpp"
+#include "reflectree/verify/bin_masses.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -108,6 +108,44 @@ CubatureResult integrate(const Integrand& f, const CubatureBox& box, CubatureOpt
   return total;
 }
 
+using Points = std::vector<Vec2<double>>;
+
+// Every box. A function that is called from one thread may be a program on a pipe, to which each call is
+// dear: what the cubatures ask first is asked for all boxes at once.
+std::vector<CubatureResult> integrate_all(const Integrand& f, bool concurrent,
+                                          const std::vector<CubatureBox>& boxes,
+                                          const CubatureOptions& options, const Host& host) {
+  std::vector<CubatureResult> results(boxes.size());
+  if (concurrent) {
+    detail::for_each_index(host, true, boxes.size(),
+                           [&](std::size_t i) { results[i] = integrate(f, boxes[i], options); });
+    return results;
+  }
+  Points all;
+  std::vector<std::size_t> first;  // of each call
+  const Integrand record = [&](std::span<const Vec2<double>> p, std::span<double> out) {
+    first.push_back(all.size());
+    all.insert(all.end(), p.begin(), p.end());
+    std::fill(out.begin(), out.end(), 0.);  // no error: nothing more is asked
+  };
+  for (const CubatureBox& box : boxes) integrate(record, box, options);
+  std::vector<double> known(all.size());
+  f(all, known);
+  std::size_t next = 0;
+  const Integrand replay = [&](std::span<const Vec2<double>> p, std::span<double> out) {
+    if (next < first.size() && all[first[next]] == p[0]) {
+      std::copy_n(known.begin() + std::ptrdiff_t(first[next++]), out.size(), out.begin());
+    } else {
+      f(p, out);
+    }
+  };
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (host.cancelled()) throw Cancelled();
+    results[i] = integrate(replay, boxes[i], options);
+  }
+  return results;
+}
+
 // Relative, of the total and of a cubature from cells that share no border with the first: where kinks or
 // the rim deceive both rules of a cell, the two disagree.
 double difference_to_another_road(const Integrand& f, double total) {
@@ -149,39 +187,55 @@ Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& op
   for (auto& r : regions) r.value = std::max(r.value, 0.);  // a rule with a negative weight may undershoot
   divide(bins, regions, HemisphereChart::domain, options.count);
 
-  bins.mass.resize(bins.boxes.size());
-  std::vector<double> errors(bins.boxes.size());
   CubatureOptions fine;
   fine.relative_tolerance = options.tolerance;
   fine.absolute_tolerance = 0.1 * options.tolerance * whole.value / options.count;
   fine.max_evaluations = 200'000;
-  detail::for_each_index(host, f.concurrent, bins.boxes.size(), [&](std::size_t i) {
-    const CubatureResult r = integrate(integrand, bins.boxes[i], fine);
-    bins.mass[i] = r.value;
-    errors[i] = r.error;
-  });
+  const auto results = integrate_all(integrand, f.concurrent, bins.boxes, fine, host);
   CompensatedSum total;
-  for (std::size_t i = 0; i < bins.mass.size(); ++i) {
-    total += bins.mass[i];
-    if (bins.mass[i] > 0) bins.worst_error = std::max(bins.worst_error, errors[i] / bins.mass[i]);
+  for (const CubatureResult& r : results) {
+    bins.mass.push_back(r.value);
+    total += r.value;
+    if (r.value > 0) bins.worst_error = std::max(bins.worst_error, r.error / r.value);
   }
   bins.total = total.value();
   bins.worst_error = std::max(bins.worst_error, difference_to_another_road(integrand, bins.total));
   return bins;
 }
 
-std::vector<double> density_masses(const ErasedSampler& sampler, const Bins& bins, double tolerance,
-                                   const Host& host) {
-  std::vector<double> mass(bins.boxes.size());
-  const Integrand integrand = chart_integrand(sampler, bins.wo, bins.chart);
+namespace {
+
+BinMasses masses(const Integrand& integrand, bool concurrent, const Bins& bins, double tolerance,
+                 double absolute_tolerance, const Host& host) {
   CubatureOptions options;
   options.relative_tolerance = tolerance;
-  options.absolute_tolerance = 0.1 * tolerance / double(std::max<std::size_t>(mass.size(), 1));
+  options.absolute_tolerance = absolute_tolerance;
   options.max_evaluations = 60'000;
-  detail::for_each_index(host, sampler.concurrent, mass.size(), [&](std::size_t i) {
-    mass[i] = integrate(integrand, bins.boxes[i], options).value;
-  });
-  return mass;
+  BinMasses result;
+  CompensatedSum error;
+  for (const CubatureResult& r : integrate_all(integrand, concurrent, bins.boxes, options, host)) {
+    result.mass.push_back(r.value);
+    error += r.error;
+  }
+  result.error = error.value();
+  return result;
+}
+
+double share_of_a_bin(const Bins& bins) { return 1 / double(std::max<std::size_t>(bins.boxes.size(), 1)); }
+
+}  // namespace
+
+std::vector<double> density_masses(const ErasedSampler& sampler, const Bins& bins, double tolerance,
+                                   const Host& host) {
+  return masses(chart_integrand(sampler, bins.wo, bins.chart), sampler.concurrent, bins, tolerance,
+                0.1 * tolerance * share_of_a_bin(bins), host)
+      .mass;
+}
+
+BinMasses function_masses(const TargetFunction& f, const Bins& bins, double tolerance, const Host& host) {
+  const Vec3<double> w = normalize(Vec3<double>{bins.wo.x, bins.wo.y, bins.wo.z});
+  return masses(chart_integrand(f, w, bins.chart), f.concurrent, bins, tolerance,
+                0.1 * tolerance * share_of_a_bin(bins) * bins.total, host);
 }
 
 }  // namespace reflectree

@@ -7,7 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, environment
 
-SUBCOMMANDS = ["list", "build", "info", "eval", "sample", "verify", "draw", "bake", "export", "demo"]
+SUBCOMMANDS = ["list", "build", "info", "eval", "sample", "verify", "doctor", "draw", "bake", "export", "demo"]
 
 
 def on_terminal(args, **changes):
