@@ -106,13 +106,13 @@ TEST(Adjoint, GlassPassesPowerUnsqueezed) {
 struct Forgetful final : Scattering {
   ScatteringPtr own;
   explicit Forgetful(ScatteringPtr s) : own(std::move(s)) {}
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return own->f_cos(wo, wi, uv); }
-  float pdf(Direction wo, Direction wi, Uv uv) const override { return own->pdf(wo, wi, uv); }
-  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
-    return own->sample(wo, uv, u);
+  Rgb f_cos(Direction wo, Direction wi, Place place) const override { return own->f_cos(wo, wi, place); }
+  float pdf(Direction wo, Direction wi, Place place) const override { return own->pdf(wo, wi, place); }
+  std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
+    return own->sample(wo, place, u);
   }
-  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
-    return own->sample(wi, uv, u);
+  std::optional<Scattered> sample_adjoint(Direction wi, Place place, PathBits& u) const override {
+    return own->sample(wi, place, u);
   }
 };
 

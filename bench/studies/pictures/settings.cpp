@@ -32,11 +32,11 @@ constexpr Setting all[] = {
 struct Undivided final : Scattering {
   ScatteringPtr whole;
   explicit Undivided(ScatteringPtr s) : whole(std::move(s)) {}
-  Rgb f_cos(Direction wo, Direction wi, Uv uv) const override { return whole->f_cos(wo, wi, uv); }
-  float pdf(Direction wo, Direction wi, Uv uv) const override { return whole->pdf(wo, wi, uv); }
-  Value value(Direction wo, Direction wi, Uv uv) const override { return whole->value(wo, wi, uv); }
-  std::optional<Scattered> sample(Direction wo, Uv uv, PathBits& u) const override {
-    return whole->sample(wo, uv, u);
+  Rgb f_cos(Direction wo, Direction wi, Place place) const override { return whole->f_cos(wo, wi, place); }
+  float pdf(Direction wo, Direction wi, Place place) const override { return whole->pdf(wo, wi, place); }
+  Value value(Direction wo, Direction wi, Place place) const override { return whole->value(wo, wi, place); }
+  std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
+    return whole->sample(wo, place, u);
   }
   void values(std::span<const View> views, std::span<const Direction> wi,
               std::span<Value> out) const override {
@@ -46,10 +46,11 @@ struct Undivided final : Scattering {
                std::span<std::optional<Scattered>> out) const override {
     whole->samples(views, u, out);
   }
-  std::optional<Scattered> sample_adjoint(Direction wi, Uv uv, PathBits& u) const override {
-    return whole->sample_adjoint(wi, uv, u);
+  std::optional<Scattered> sample_adjoint(Direction wi, Place place, PathBits& u) const override {
+    return whole->sample_adjoint(wi, place, u);
   }
   Lobes lobes() const override { return whole->lobes(); }
+  Asks asks() const override { return whole->asks(); }
   bool has_pdf() const override { return whole->has_pdf(); }
 };
 
