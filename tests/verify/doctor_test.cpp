@@ -36,7 +36,7 @@ void expect_sound(const std::string& name, const Patient& p, std::uint64_t seed 
   options.seed = seed;
   const Diagnosis d = doctor(p, options, two_threads());
   EXPECT_TRUE(d.healthy()) << name << ", seed " << seed << "\n" << all_words(d);
-  EXPECT_GT(d.checks.size(), 30u);
+  EXPECT_GT(d.checks.size(), 20u);
 }
 
 void expect_named(const Entry& entry) {

@@ -177,8 +177,8 @@ void add_leaps_at_knots(const Field& field, const Axis& axis, const Host& host, 
 Jumps find_jumps(const Field& field, const Host& host, Effort& effort) {
   constexpr double narrow = 1e-7;  // radians
   Jumps jumps;
-  // Nearer to the normal floats of the cosine are themselves leaps apart.
-  const Axis theta_o{false, 5e-3, std::acos(double(min_cos_theta_o)) - 1e-4, 128};
+  // The normal itself counts: there a viewer loses its azimuth, and the domain is turned by none.
+  const Axis theta_o{false, 1e-4, std::acos(double(min_cos_theta_o)) - 1e-4, 128};
   for (const Bracket& b : find_leaps(field, theta_o, narrow, host, effort))
     jumps.theta_o.push_back(between_floats(field, theta_o, b, leap, host, effort));
   add_leaps_at_knots(field, theta_o, host, effort, jumps.theta_o);
