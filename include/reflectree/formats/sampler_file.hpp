@@ -11,6 +11,9 @@
 //         tree = nodes (2 bits each) mass:u32... slope_x:i8... slope_y:i8...
 //   ALBD  relative_error:f32 cos_theta_o:f32... albedo:f32...
 //   ANIS  of anisotropic functions: symmetry:u8 axis:f32 stretch:f32 phi_o:f32... (albedos row by row)
+//   FMLY  of families: (name lo:f32 hi:f32 logarithmic:u8 axis of the albedo: lo:f32 hi:f32 rows:u32)...,
+//         the law of the widths x:f32[3] y:f32[3] (albedos: the last parameter outermost)
+//   WDTH  of a member cut out of a family: the widths of its domain, x:f32 y:f32
 //   PROB  64 probes of the BRDF's target            REPT  what the builder measured (optional)
 //
 // Flag bit 0 marks a chunk that a reader who does not know its tag or version may skip. Lists carry their

@@ -62,22 +62,23 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   const PackedSampler& packed = sampler.packed();
   detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
-  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    for (std::size_t i = 0; i < wo.size();) {
-      block.count = 0;
-      for (; i < wo.size() && !block.full(); ++i) {
-        Incidence in;
-        if (!find_incidence(packed.viewer, wo[i], in)) {
-          detail::store_no_sample(values.zero(), out[i]);
-          continue;
+  with_known_kind(
+      detail::domain_of_all(sampler.brdf(), packed), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+        for (std::size_t i = 0; i < wo.size();) {
+          block.count = 0;
+          for (; i < wo.size() && !block.full(); ++i) {
+            Incidence in;
+            if (!detail::find_incidence_of(sampler.brdf(), packed, wo[i], in)) {
+              detail::store_no_sample(values.zero(), out[i]);
+              continue;
+            }
+            const PackedSlab& slab = detail::slab_of<F>(packed.one_shot, in);
+            const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
+            block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half(), u);
+          }
+          detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
         }
-        const PackedSlab& slab = packed.one_shot.slab_at(in);
-        const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
-        block.add(i, in, detail::choose_leaf(slab, leaves, detail::bits64(u)), domain.half(), u);
-      }
-      detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
-    }
-  });
+      });
 }
 
 // One-shot by monotone descent: out[i] is sampler.sample(wo[i], points[i].x, points[i].y).
@@ -96,38 +97,40 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
     std::size_t i;
     float turn;
   };
-  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    for (std::size_t i = 0; i < wo.size();) {
-      block.count = 0;
-      while (i < wo.size() && block.count + side_by_side <= detail::block_size) {
-        detail::Descent descents[side_by_side];
-        Started started[side_by_side];
-        std::size_t n = 0;
-        for (; i < wo.size() && n < side_by_side; ++i) {
-          Started& s = started[n];
-          if (!detail::are_uniforms(points[i].x, points[i].y) ||
-              !find_incidence(packed.viewer, wo[i], s.in)) {
-            detail::store_no_sample(values.zero(), out[i]);
-            continue;
+  with_known_kind(
+      detail::domain_of_all(sampler.brdf(), packed), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+        for (std::size_t i = 0; i < wo.size();) {
+          block.count = 0;
+          while (i < wo.size() && block.count + side_by_side <= detail::block_size) {
+            detail::Descent descents[side_by_side];
+            Started started[side_by_side];
+            std::size_t n = 0;
+            for (; i < wo.size() && n < side_by_side; ++i) {
+              Started& s = started[n];
+              if (!detail::are_uniforms(points[i].x, points[i].y) ||
+                  !detail::find_incidence_of(sampler.brdf(), packed, wo[i], s.in)) {
+                detail::store_no_sample(values.zero(), out[i]);
+                continue;
+              }
+              // Folded continuously across the plane of incidence.
+              const bool below = half && points[i].y < 0.5;
+              const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
+              s.i = i;
+              s.turn = below ? -0.f : 0.f;
+              descents[n++].start(packed.one_shot, detail::slab_of<F>(packed.one_shot, s.in), points[i].x,
+                                  u2);
+            }
+            detail::descend(descents, n);
+            for (std::size_t j = 0; j < n; ++j) {
+              const std::size_t k = block.add(started[j].i, started[j].in, *descents[j].leaf, half);
+              block.at[Field::across_x][k] = descents[j].across(0);
+              block.at[Field::across_y][k] = descents[j].across(1);
+              block.at[Field::turn][k] = started[j].turn;
+            }
           }
-          // Folded continuously across the plane of incidence.
-          const bool below = half && points[i].y < 0.5;
-          const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
-          s.i = i;
-          s.turn = below ? -0.f : 0.f;
-          descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in), points[i].x, u2);
+          detail::finish_one_shot<detail::AcrossX::uniform>(domain, block, values, out);
         }
-        detail::descend(descents, n);
-        for (std::size_t j = 0; j < n; ++j) {
-          const std::size_t k = block.add(started[j].i, started[j].in, *descents[j].leaf, half);
-          block.at[Field::across_x][k] = descents[j].across(0);
-          block.at[Field::across_y][k] = descents[j].across(1);
-          block.at[Field::turn][k] = started[j].turn;
-        }
-      }
-      detail::finish_one_shot<detail::AcrossX::uniform>(domain, block, values, out);
-    }
-  });
+      });
 }
 
 // Exact: out[i] is distributed as sampler.sample(wo[i], u), independent of the others. Rejected trials begin
@@ -147,53 +150,54 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
     int trials;
   };
   Pending pending[detail::block_size];
-  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < wo.size() || count > 0;) {
-      for (; i < wo.size() && count < detail::block_size; ++i) {
-        Pending& p = pending[count];
-        if (!find_incidence(packed.viewer, wo[i], p.in)) {
-          detail::store_no_sample(values.zero(), out[i]);
-          continue;
+  with_known_kind(
+      detail::domain_of_all(sampler.brdf(), packed), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < wo.size() || count > 0;) {
+          for (; i < wo.size() && count < detail::block_size; ++i) {
+            Pending& p = pending[count];
+            if (!detail::find_incidence_of(sampler.brdf(), packed, wo[i], p.in)) {
+              detail::store_no_sample(values.zero(), out[i]);
+              continue;
+            }
+            p.slab = &detail::slab_of<F>(packed.exact, p.in);
+            p.i = i;
+            p.trials = 0;
+            ++count;
+          }
+          b.count = 0;
+          for (std::size_t k = 0; k < count; ++k) {
+            const Pending& p = pending[k];
+            const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
+            b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
+            b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
+          }
+          detail::compute_points<detail::AcrossX::place>(domain, b, values);
+          // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
+          for (std::size_t k = 0; k < count; k += lane_count) {
+            const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
+            b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
+            b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
+            b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
+            b.set(Field::scale, k, a / t);
+          }
+          std::size_t rejected = 0;
+          for (std::size_t k = 0; k < count; ++k) {
+            const float target = b.at[Field::target][k];
+            const bool accepted = b.at[Field::uniform][k] < target;
+            stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
+            if (accepted) {
+              detail::store_sample(b, values, k, out[b.index[k]]);
+            } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
+              pending[rejected++] = pending[k];
+            } else {
+              stats.exhausted();
+              detail::store_no_sample(values.zero(), out[b.index[k]]);
+            }
+          }
+          count = rejected;
         }
-        p.slab = &packed.exact.slab_at(p.in);
-        p.i = i;
-        p.trials = 0;
-        ++count;
-      }
-      b.count = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        const Pending& p = pending[k];
-        const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
-        b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
-        b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
-      }
-      detail::compute_points<detail::AcrossX::place>(domain, b, values);
-      // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
-      for (std::size_t k = 0; k < count; k += lane_count) {
-        const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
-        b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
-        b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
-        b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
-        b.set(Field::scale, k, a / t);
-      }
-      std::size_t rejected = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        const float target = b.at[Field::target][k];
-        const bool accepted = b.at[Field::uniform][k] < target;
-        stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
-        if (accepted) {
-          detail::store_sample(b, values, k, out[b.index[k]]);
-        } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
-          pending[rejected++] = pending[k];
-        } else {
-          stats.exhausted();
-          detail::store_no_sample(values.zero(), out[b.index[k]]);
-        }
-      }
-      count = rejected;
-    }
-  });
+      });
 }
 
 }  // namespace reflectree

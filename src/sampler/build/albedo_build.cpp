@@ -7,6 +7,7 @@
 #include "albedo_azimuth.hpp"
 #include "albedo_integrals.hpp"
 #include "albedo_panels.hpp"
+#include "albedo_parameters.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 
@@ -18,10 +19,11 @@ namespace {
 // with.
 class TableBuilder {
  public:
-  TableBuilder(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
-               const Host& host, Effort& effort, std::uint64_t budget)
+  TableBuilder(const Field& field, float phi_o, const Coordinates& at, float relative_error,
+               const std::vector<float>& jumps, const Host& host, Effort& effort, std::uint64_t budget)
       : field_(field),
         phi_o_(phi_o),
+        at_(at),
         host_(host),
         effort_(effort),
         error_(double(relative_error)),
@@ -29,7 +31,7 @@ class TableBuilder {
         start_(effort.evaluations),
         budget_(budget),
         apart_{0, effort.limit},
-        rim_(!field.frame.isotropic()) {
+        rim_(!field.frame.isotropic() || field.family) {
     if (!field.frame.isotropic()) cells_x_ = 12, cells_y_ = 6;
     std::vector<double> borders = first_borders(field.f.traits());
     for (const float theta : jumps) borders.push_back(before(theta)), borders.push_back(after(theta));
@@ -65,14 +67,14 @@ class TableBuilder {
         }
       }
       std::vector<double> misses =
-          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress, phi_o_});
+          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress, phi_o_, at_});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
         if (misses[i] > accepted * error_) doubtful.push_back(cosines[i]);
       }
       const std::vector<double> decided =
-          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress, phi_o_});
+          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress, phi_o_, at_});
       double worst = 0;
       std::vector<Panel> missed;
       for (std::size_t i = 0, d = 0; i < cosines.size(); ++i) {
@@ -201,8 +203,8 @@ class TableBuilder {
     std::vector<float> cosines;
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
     const Integrals a = integrate(
-        field_, cosines, {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, phi_o_}, host_,
-        effort_);
+        field_, cosines, {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, phi_o_, at_},
+        host_, effort_);
     for (std::size_t i = 0; i < thetas.size(); ++i) nodes_[thetas[i]] = a.values[i] / factor(thetas[i]);
     worst_ = max(worst_, a.error);
   }
@@ -232,6 +234,7 @@ class TableBuilder {
 
   const Field& field_;
   const float phi_o_;
+  const Coordinates at_;
   const Host& host_;
   Effort& effort_;
   double error_;
@@ -250,14 +253,42 @@ class TableBuilder {
 
 namespace {
 
-// The table at one azimuth of the viewer.
-AlbedoTable build_row(const Field& field, float phi_o, float relative_error, const std::vector<float>& jumps,
-                      std::uint64_t seed, const Host& host, Effort& effort, std::uint64_t budget,
-                      bool checked) {
-  TableBuilder builder(field, phi_o, relative_error, jumps, host, effort, budget);
+// The table at one azimuth of the viewer, of one member.
+AlbedoTable build_row(const Field& field, float phi_o, const Coordinates& at, float relative_error,
+                      const std::vector<float>& jumps, std::uint64_t seed, const Host& host, Effort& effort,
+                      std::uint64_t budget, bool checked) {
+  TableBuilder builder(field, phi_o, at, relative_error, jumps, host, effort, budget);
   builder.refine();
   if (checked) builder.check(seed);
   return builder.table();
+}
+
+// The largest miss of a family's table at viewers and members anywhere, relatively, by cubature from other
+// cells than those that it was made of.
+double largest_miss(const Field& field, const AlbedoTable& table, float relative_error, std::uint64_t seed,
+                    const Host& host) {
+  constexpr int places = 48, viewers = 3;
+  Pcg32 u(seed, 29);
+  const KnownBox whole = field.whole();
+  double worst = 0;
+  Effort uncounted;
+  for (int k = 0; k < places; ++k) {
+    Shares share{};
+    for (int axis = 1; axis < whole.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
+    const Known known = whole.at(share);
+    IntegralOptions options{0.25 * double(relative_error), 11, 7, true, 0.4f, 0.4f, known[1]};
+    options.at = {known[2], known[3]};
+    std::vector<float> cosines;
+    // Elevations up to 89.9 degrees; a third of them near the horizon.
+    for (int i = 0; i < viewers; ++i)
+      cosines.push_back(i == 0 ? 1.8e-3f + 0.2f * sqr(to_unit_float(u())) : max(to_unit_float(u()), 1.8e-3f));
+    const Integrals seen = integrate(field, cosines, options, host, uncounted);
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      const double a = double(albedo_at(table, cosines[i], known[1], options.at)), b = seen.values[i];
+      if (max(a, b) > 0) worst = max(worst, std::abs(a - b) / max(a, b));
+    }
+  }
+  return worst;
 }
 
 }  // namespace
@@ -265,14 +296,42 @@ AlbedoTable build_row(const Field& field, float phi_o, float relative_error, con
 AlbedoTable build_albedo(const Field& field, float relative_error, const std::vector<float>& jumps,
                          std::uint64_t seed, const Host& host, Effort& effort) {
   const std::uint64_t budget = effort.limit / 3;
-  if (field.frame.isotropic())
-    return build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
+  if (field.frame.isotropic() && !field.family)
+    return build_row(field, 0, {}, relative_error, jumps, seed, host, effort, budget, true);
   const std::uint64_t start = effort.evaluations;
-  const auto row_at = [&](float phi_o, bool checked) {
-    return build_row(field, phi_o, 0.35f * relative_error, jumps, seed, host, effort, budget / 8, checked);
-  };
   const auto spent = [&] { return effort.evaluations - start > budget; };
-  return albedo_over_azimuth(field.frame.symmetry, relative_error, row_at, spent);
+  // Of one member, over theta_o and, of anisotropic ones, phi_o.
+  const auto member_at = [&](const Coordinates& at, float error, bool with_checks) {
+    const auto row_at = [&](float phi_o, bool checked) {
+      return build_row(field, phi_o, at, 0.35f * error, jumps, seed, host, effort, budget / 8,
+                       checked && with_checks);
+    };
+    return field.frame.isotropic() ? row_at(0, true)
+                                   : albedo_over_azimuth(field.frame.symmetry, error, row_at, spent);
+  };
+  if (!field.family) return member_at({}, relative_error, true);
+  // The first parameter varies inside of the second.
+  const std::vector<KnownParameter>& parameters = field.parameters;
+  const auto over_first = [&](float second, float error, bool with_checks) {
+    const float inner = field.frame.isotropic() ? error : 0.5f * error;
+    return albedo_over_parameter(
+        parameters[0], error,
+        [&](float first, bool checked) {
+          return member_at({first, second}, inner, checked && with_checks);
+        },
+        spent);
+  };
+  AlbedoTable table = parameters.size() == 1
+                          ? over_first(0, relative_error, true)
+                          : albedo_over_parameter(
+                                parameters[1], relative_error,
+                                [&](float second, bool checked) {
+                                  return over_first(second, 0.5f * relative_error, checked);
+                                },
+                                spent);
+  const double miss = largest_miss(field, table, relative_error, seed, host);
+  if (miss > double(table.relative_error)) table.relative_error = float(min(2 * miss, 1.));
+  return table;
 }
 
 }  // namespace reflectree::detail

@@ -16,6 +16,7 @@ struct IntegralOptions {
   bool rim = false;  // close in on the rim, where some functions bend within cos_theta_o of it
   float progress = 0, progress_end = 0;  // of the host's bar
   float phi_o = 0;                       // of all viewers, in their frame
+  Coordinates at = {};                   // of families
 };
 
 struct Integrals {

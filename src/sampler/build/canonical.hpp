@@ -6,7 +6,7 @@
 
 namespace reflectree::detail {
 
-Partition partition_of(const std::vector<Slab>& slabs);
+Partition partition_of(const std::vector<Slab>& slabs, const std::vector<KnownParameter>& parameters);
 // The tree of a slab with its bounds, in integer masses that are rounded up.
 MajorantTree majorant_tree(const Slab& slab);
 DensityTree density_tree(const Slab& slab);

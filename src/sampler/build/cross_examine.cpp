@@ -18,8 +18,10 @@ constexpr std::size_t most_surprises = 8;
 
 // The share of all viewers, uniform in the known coordinates, that are in the slab.
 double share_of_viewers(const Slab& slab, const Field& field) {
-  double share = double(slab.box.width(0)) / double(theta_max);
-  if (slab.box.axes > 1) share *= double(slab.box.width(1)) / double(azimuth_span(field.frame.symmetry));
+  const KnownBox whole = field.whole();
+  double share = 1;
+  for (int axis = 0; axis < whole.axes; ++axis)
+    share *= double(slab.box.width(axis)) / double(whole.width(axis));
   return share;
 }
 
@@ -32,6 +34,14 @@ const Leaf& leaf_at(const Slab& slab, Vec2<float> p, const Domain& domain) {
     i = child + std::uint32_t(up);
   }
   return slab.nodes[i].leaf;
+}
+
+std::size_t slab_of(const Partition& partition, const Viewer& viewer, const KnownBox& whole) {
+  const Known known = known_of(viewer, whole);
+  std::array<float, known_slots> along{};
+  for (int axis = 0; axis < whole.axes; ++axis)
+    along[std::size_t(axis)] = known[whole.slot[std::size_t(axis)]];
+  return find_slab(partition, along);
 }
 
 struct Mean {
@@ -48,18 +58,22 @@ struct Mean {
 // Two of three probes uniform over the hemisphere, the third over the square.
 std::vector<FieldPoint> probes(const Field& field, std::size_t count, Pcg32& u) {
   const Domain& domain = field.domain;
+  const KnownBox whole = field.whole();
   std::vector<FieldPoint> points;
   for (std::size_t i = 0; i < count; ++i) {
     const float theta = theta_max * to_unit_float(u());
     const float a = to_unit_float(u()), b = to_unit_float(u());
-    const float phi_o = field.axes() > 1 ? azimuth_span(field.frame.symmetry) * to_unit_float(u()) : 0.f;
-    const Direction wo = viewer_at({theta, phi_o});
+    Shares share{};
+    for (int axis = 1; axis < whole.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
+    Known known = whole.at(share);
+    known[0] = theta;
+    const Viewer viewer = viewer_at(known);
     if (i % 3 == 0) {
-      points.push_back({wo, square_point(domain.symmetry, a, b)});
+      points.push_back(field_point(viewer, square_point(domain.symmetry, a, b)));
       continue;
     }
     const float z = max(b, 1e-4f), r = sqrt(1 - z * z), phi = (domain.half() ? pi : 2 * pi) * a;
-    points.push_back({wo, field.place_of(wo, {r * cos(phi), r * sin(phi), z})});
+    points.push_back(field_point(viewer, field.place_of(viewer, {r * cos(phi), r * sin(phi), z})));
   }
   return points;
 }
@@ -78,9 +92,9 @@ void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain,
     const Box box = box_of(leaf.cell, domain);
     const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
                         box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
-    Known share{};
+    Shares share{};
     for (int axis = 0; axis < slab.box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
-    points.push_back({viewer_at(slab.box.at(share)), p});
+    points.push_back(field_point(viewer_at(slab.box.at(share)), p));
     bounds.push_back(leaf.height * shape(leaf, box, p));
   }
 }
@@ -94,21 +108,21 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   Pcg32 u(seed, 23);
   CrossExamination result;
 
-  const Partition partition = partition_of(slabs);
+  const KnownBox whole = survey.field.whole();
+  const Partition partition = partition_of(slabs, survey.field.parameters);
   std::vector<FieldPoint> points = probes(survey.field, probe_count, u);
   points.push_back(brightest);
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (survey.at_jump(points[i].wo)) continue;
-    const float a = survey.albedo_at(points[i].wo);
+    const float a = survey.albedo_at(points[i].viewer());
     if (!(values[i].upper > 0)) continue;
-    const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
-    const Leaf& leaf = leaf_at(slabs[find_slab(partition, known)], points[i].p, domain);
+    const Leaf& leaf = leaf_at(slabs[slab_of(partition, points[i].viewer(), whole)], points[i].p, domain);
     const float bound = leaf.height * shape(leaf, box_of(leaf.cell, domain), points[i].p);
     const float ratio = a > 0 ? values[i].upper / (a * bound) : std::numeric_limits<float>::infinity();
     if (!(ratio > surprising)) continue;
-    result.surprises.push_back({points[i].wo, survey.field.direction_at(points[i]), ratio});
+    result.surprises.push_back({points[i].viewer(), survey.field.direction_at(points[i]), ratio});
   }
   std::stable_sort(result.surprises.begin(), result.surprises.end(),
                    [](const Surprise& a, const Surprise& b) { return a.ratio > b.ratio; });
@@ -132,7 +146,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
     const auto volume = double(total(slabs[s], &Leaf::cost));
     Mean once, accepted;
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) {
-      const float a = survey.albedo_at(points[i].wo);
+      const float a = survey.albedo_at(points[i].viewer());
       if (!(a > 0) || survey.at_jump(points[i].wo)) continue;
       // Of mirror images on half a square one is drawn: their mean is what is accepted.
       const double ratio = double(values[i].mean) / (double(a) * double(bounds[i]));

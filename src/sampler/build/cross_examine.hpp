@@ -8,8 +8,9 @@ namespace reflectree::detail {
 
 // A direction at which f towers over its bound, or has a value where the albedo says that there is none.
 struct Surprise {
-  Direction wo, wi;  // in the viewer's frame
-  float ratio;       // of T / albedo to the bound; infinite where the albedo is 0
+  Viewer viewer;
+  Direction wi;  // in the viewer's frame
+  float ratio;   // of T / albedo to the bound; infinite where the albedo is 0
 };
 
 struct CrossExamination {

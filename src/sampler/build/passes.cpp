@@ -28,14 +28,11 @@ std::vector<Slab> first_slabs(const Survey& survey) {
   std::vector<float> knots = field.f.traits().theta_o_knots;
   if (survey.jumps) knots.insert(knots.end(), survey.jumps->begin(), survey.jumps->end());
   const std::vector<float> thetas = sorted_borders(knots, theta_max);
-  std::vector<float> phis{0, 0};
-  if (!field.frame.isotropic()) phis = sorted_borders({}, azimuth_span(field.frame.symmetry));
   std::vector<Slab> slabs;
+  KnownBox box = field.whole();
   for (std::size_t i = 0; i + 1 < thetas.size(); ++i) {
-    for (std::size_t k = 0; k + 1 < phis.size(); ++k) {
-      const KnownBox box{{thetas[i], phis[k]}, {thetas[i + 1], phis[k + 1]}, field.axes()};
-      slabs.push_back(make_slab(box, survey.albedo, field));
-    }
+    box.lo[0] = thetas[i], box.hi[0] = thetas[i + 1];
+    slabs.push_back(make_slab(box, survey.albedo, field));
   }
   return slabs;
 }

@@ -20,6 +20,7 @@ constexpr double narrow = 1e-7;  // radians
 struct FixedPoint {
   Vec2<float> p;
   float phi_o;
+  Coordinates at;
 };
 std::vector<FixedPoint> fixed_points(const Field& field, std::uint64_t seed) {
   const Domain& domain = field.domain;
@@ -30,7 +31,13 @@ std::vector<FixedPoint> fixed_points(const Field& field, std::uint64_t seed) {
     float y = to_unit_float(u());
     if (i % 2) y = std::pow(10.f, -3 * y);
     const Vec2<float> at{2 * to_unit_float(u()) - 1, domain.half() || u() % 2 ? y : -y};
-    p.push_back({at, span * to_unit_float(around())});
+    const float phi_o = span * to_unit_float(around());
+    Coordinates member{};
+    for (std::size_t k = 0; k < field.parameters.size(); ++k) {
+      const KnownParameter& q = field.parameters[k];
+      member[k] = linear_mix(to_unit_float(around()), lowest(q), highest(q));
+    }
+    p.push_back({at, phi_o, member});
   }
   return p;
 }
@@ -43,7 +50,7 @@ std::vector<Values> values_at(const Field& field, const std::vector<FixedPoint>&
   std::vector<FieldPoint> all;
   for (const double theta : thetas) {
     const Direction wo = wo_from_cosine(clamp(float(std::cos(theta)), min_cos_theta_o, 1.f));
-    for (const FixedPoint& q : p) all.push_back({turned_to(wo, q.phi_o), q.p});
+    for (const FixedPoint& q : p) all.push_back({turned_to(wo, q.phi_o), q.p, q.at});
   }
   std::vector<FieldValue> values(all.size());
   eval_in_parallel(field, host, effort, all, values);

@@ -8,24 +8,35 @@
 
 #include "reflectree/math/scalar.hpp"
 #include "reflectree/sampler/known/cosine_lookup.hpp"
+#include "reflectree/sampler/known/parameter.hpp"
 
 namespace reflectree {
 
-// Piecewise linear in cos_theta_o; of anisotropic functions cubic in phi_o, through four rows.
+// Equidistant places along the coordinate of a parameter, both ends included.
+struct AlbedoAxis {
+  float lo = 0, hi = 1;
+  std::uint32_t rows = 4;
+  friend bool operator==(const AlbedoAxis&, const AlbedoAxis&) = default;
+};
+
+// Piecewise linear in cos_theta_o; of anisotropic functions cubic in phi_o, of families in the coordinate of
+// each parameter, through four rows.
 struct AlbedoTable {
   std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
-  std::vector<float> albedo;       // [phi_o][cos_theta_o]
+  std::vector<float> albedo;       // [second parameter][first parameter][phi_o][cos_theta_o]
   // Stated bound on the error of quadrature and interpolation up to 89.9 degrees; beyond, ten times as large.
   float relative_error = 0;
   // Equidistant azimuths of the viewer from 0 to azimuth_span, radians; empty for isotropic functions.
   std::vector<float> phi_o = {};
-  bool even = false;  // in phi_o about both ends, by mirror planes; else periodic
+  bool even = false;                        // in phi_o about both ends, by mirror planes; else periodic
+  std::vector<AlbedoAxis> parameters = {};  // of families
   friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
 // a(wo) by linear interpolation; 0 outside the table.
 float albedo_at(const AlbedoTable& table, float cos_theta_o);
 float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o);
+float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o, const Coordinates& at);
 // Throws Error unless the nodes ascend over the hemisphere and every value is a number that is not negative.
 void validate(const AlbedoTable& table);
 
@@ -45,6 +56,8 @@ struct PackedAlbedo {
   std::vector<AlbedoPiece> pieces;
   std::size_t row = 0;            // pieces of one azimuth
   float azimuths_per_radian = 0;  // 0 for isotropic functions
+  // Of families, whose pieces have a row more at both ends of each of these, too.
+  std::vector<AlbedoAxis> parameters = {};
 
   float at(float cos_theta_o) const {
     const AlbedoPiece& piece = pieces[lookup(cos_theta_o)];
@@ -62,6 +75,8 @@ struct PackedAlbedo {
       sum += weights[i] * (piece->base + piece->slope * cos_theta_o);
     return max(sum, 0.f);
   }
+  // Of families.
+  float at(float cos_theta_o, float phi_o, const Coordinates& at) const;
   std::size_t bytes() const { return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece); }
 };
 PackedAlbedo pack(const AlbedoTable& table);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A partition of the known coordinates into slabs: a binary tree over a short list of named
-// coordinates (today theta_o; later wo on the square and up to two material parameters).
+// coordinates: theta_o, of anisotropic functions phi_o, of families one or two parameters.
 #pragma once
 
 #include <cstdint>
