@@ -2,6 +2,7 @@
 #include "reflectree/sampler/member.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "reflectree/error.hpp"
 
@@ -77,9 +78,12 @@ SamplerData member_data(const SamplerData& family, const Parameters& at, std::st
   const AlbedoTable& table = family.albedo;
   member.albedo.cos_theta_o = table.cos_theta_o, member.albedo.phi_o = table.phi_o;
   member.albedo.even = table.even, member.albedo.relative_error = table.relative_error;
-  for (std::size_t k = 0; k < std::max<std::size_t>(table.phi_o.size(), 1); ++k) {
-    for (const float c : table.cos_theta_o)
-      member.albedo.albedo.push_back(albedo_at(table, c, table.phi_o.empty() ? 0 : table.phi_o[k], known));
+  const std::vector<float>& azimuths = table.phi_o;
+  for (std::size_t k = 0; k < std::max<std::size_t>(azimuths.size(), 1); ++k) {
+    float phi = azimuths.empty() ? 0 : azimuths[k];
+    // Where a segment ends and the next one begins, both sides.
+    if (k + 1 < azimuths.size() && azimuths[k + 1] == phi) phi = std::nextafter(phi, 0.f);
+    for (const float c : table.cos_theta_o) member.albedo.albedo.push_back(albedo_at(table, c, phi, known));
   }
   member.probes = probes;
   member.report = family.report;

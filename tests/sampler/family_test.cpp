@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "functions.hpp"
 #include "reflectree/brdf/material/model_family.hpp"
@@ -102,6 +103,32 @@ TEST(Family, AlbedoBetweenItsRows) {
     EXPECT_NEAR(double(metal().sampler.exact.at(look.at).albedo(look.wo)) / bins.total, 1,
                 1e-4 + bins.worst_error)
         << look.at[0] << ' ' << theta_of(look.wo);
+  }
+}
+
+// Azimuths in two segments, with both sides of a leap, and two parameters: the table and its packed form.
+TEST(Family, AlbedoInSegments) {
+  AlbedoTable table{{min_cos_theta_o, 0.5f, 1}, {}, 1e-4f, {0, 0.5f, 1, 1, 2, 3}};
+  table.parameters = {{0, 1, 4}, {-1, 2, 5}};
+  const std::size_t columns = table.cos_theta_o.size(), azimuths = table.phi_o.size();
+  Pcg32 u(17);
+  for (std::size_t k = 0; k < columns * azimuths * 4 * 5; ++k) table.albedo.push_back(1 + to_unit_float(u()));
+  validate(table);
+  const PackedAlbedo packed = pack(table);
+  for (std::size_t k = 0; k < table.albedo.size(); ++k) {
+    std::size_t rest = k / columns;
+    float phi = table.phi_o[rest % azimuths];
+    if (rest % azimuths == 2) phi = std::nextafter(phi, 0.f);
+    rest /= azimuths;
+    const Coordinates at{float(rest % 4) / 3, -1 + 0.75f * float(rest / 4)};
+    const float c = table.cos_theta_o[k % columns];
+    EXPECT_NEAR(albedo_at(table, c, phi, at), table.albedo[k], 2e-5f) << k;
+    EXPECT_NEAR(packed.at(c, phi, at), table.albedo[k], 2e-5f) << k;
+  }
+  for (int i = 0; i < 2000; ++i) {
+    const float c = max(to_unit_float(u()), min_cos_theta_o), phi = 3 * to_unit_float(u());
+    const Coordinates at{to_unit_float(u()), 3 * to_unit_float(u()) - 1};
+    EXPECT_NEAR(packed.at(c, phi, at), albedo_at(table, c, phi, at), 2e-5f) << c << ' ' << phi;
   }
 }
 
