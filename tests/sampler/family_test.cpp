@@ -195,29 +195,6 @@ TEST(Family, IsRefusedWhereItIsWrong) {
   EXPECT_THROW(build(AnyFamily(negative)), Error);
 }
 
-// Any formula: a matt surface with a lobe of a width and a weight of its own, told of by nothing.
-TEST(Family, OfTwoParameters) {
-  const auto lobes = family(
-      [](Direction wo, Direction wi, const Parameters& p) {
-        const Direction h = normalize(wo + wi);
-        const float tan2 = (1 - h.z * h.z) / (h.z * h.z);
-        return 0.1f + p[1] * std::exp(-tan2 / sqr(p[0])) / sqr(p[0]);
-      },
-      {{"width", 0.1f, 0.8f}, {"weight", 0, 0.3f}});
-  BuildOptions options;
-  options.expected_trials = 1.5f, options.one_shot_variance = 0.05f, options.albedo_error = 1e-3f;
-  const SamplerData data = build(AnyFamily(lobes), options);
-  EXPECT_EQ(data.exact_partition.coordinates.size(), 3U);
-  const auto s = make_sampler(lobes, data);
-  Pcg32 u(2);
-  for (int i = 0; i < 6; ++i) {
-    const Parameters at{0.1f + 0.7f * to_unit_float(u()), 0.3f * to_unit_float(u())};
-    const Direction wo = wo_at(88 * to_unit_double(u()), 2);
-    const auto results = judge(s.at(at), target_function(AnyFamily(lobes).member(at)), wo, 200'000);
-    EXPECT_TRUE(all_passed(results)) << at[0] << ' ' << at[1] << '\n' << to_text(results);
-  }
-}
-
 // A member cut out draws the same directions.
 TEST(Family, MembersAreSamplersOfTheirOwn) {
   const Built& b = metal();
