@@ -24,7 +24,7 @@ struct Slab {
     FieldPoint point;
     float albedo;
     Known known;
-    Shares travel;  // how far it moves along the slab, along each axis
+    Known travel;  // how far it moves along the slab, by each known coordinate
   };
   std::vector<Mark> marks;
   std::vector<Node> nodes;  // nodes[0] is the root

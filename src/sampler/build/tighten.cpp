@@ -17,7 +17,7 @@ namespace {
 constexpr float margin = 1e-3f;
 
 // Where a climber stands: shares of its slab, along each known coordinate, then of its leaf; in [0, 1].
-using Place = std::array<float, known_slots + 2>;
+using Place = std::array<float, 4>;
 
 struct Climber {
   Slab* slab;
@@ -29,7 +29,7 @@ struct Climber {
 };
 
 Known known_at(const Climber& c, const Place& at) {
-  Shares share{};
+  Known share{};
   std::copy_n(at.begin(), c.slab->box.axes, share.begin());
   return c.slab->box.at(share);
 }
@@ -38,12 +38,12 @@ Vec2<float> point_at(const Climber& c, const Place& at) {
   return {c.box.x0 + c.box.width * at[x], c.box.y0 + c.box.height * at[x + 1]};
 }
 FieldPoint point_of(const Climber& c, const Place& at) {
-  return field_point(viewer_at(known_at(c, at)), point_at(c, at));
+  return {viewer_at(known_at(c, at)), point_at(c, at)};
 }
 
 // T / (albedo q): what the leaf's bound must reach at p.
 float ratio_of(const Survey& survey, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
-  const float a = survey.albedo_at(p.viewer());
+  const float a = survey.albedo_at(p.wo);
   return a > 0 && !survey.at_jump(p.wo) ? v / (a * shape(leaf, box, p.p)) : 0.f;
 }
 
@@ -68,7 +68,7 @@ void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
     survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Climber& c = climbers[i];
-        std::array<float, 2 * (known_slots + 2)> r{};
+        std::array<float, 8> r{};
         for (std::size_t k = 0; k < neighbours; ++k) {
           const std::size_t j = i * neighbours + k;
           r[k] = ratio_of(survey, *c.leaf, c.box, points[j], values[j].upper);
@@ -88,7 +88,7 @@ void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
 }
 
 Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float step, const Domain& domain) {
-  Climber c{&slab, &leaf, box_of(leaf.cell, domain), {}, {step, step, step, step, step, step}, value};
+  Climber c{&slab, &leaf, box_of(leaf.cell, domain), {}, {step, step, step, step}, value};
   std::copy_n(at.known.begin(), slab.box.axes, c.at.begin());
   c.at[std::size_t(slab.box.axes)] = at.x, c.at[std::size_t(slab.box.axes) + 1] = at.y;
   return c;
@@ -96,6 +96,9 @@ Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float
 GridPlace place_in(const Slab& slab, const Box& box, const Known& known, Vec2<float> p) {
   return {slab.box.share_of(known), (p.x - box.x0) / box.width, (p.y - box.y0) / box.height};
 }
+// The known coordinates of a viewer.
+Known known_of(Direction wo, int axes) { return {theta_of_viewer(wo), axes > 1 ? azimuth_of(wo) : 0.f}; }
+
 void raise(const Climber& c, float bound) {
   const Vec2<float> p = point_at(c, c.at);
   c.leaf->note(c.value * shape(*c.leaf, c.box, p), known_at(c, c.at), p);
@@ -212,7 +215,7 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
     if (survey.towers && worst > 8 * leaf.height) survey.towers->push_back(points[where]);
     found[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
     const Box box = box_of(leaf.cell, field.domain);
-    const GridPlace at = place_in(slab, box, known_of(points[where].viewer(), slab.box), points[where].p);
+    const GridPlace at = place_in(slab, box, known_of(points[where].wo, slab.box.axes), points[where].p);
     climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
   };
   probe_leaves(slabs, seed, &FieldValue::upper, survey, count, visit);
@@ -225,17 +228,17 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
 
 void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, const Survey& survey) {
   const Domain& domain = survey.field.domain;
-  const KnownBox whole = survey.field.whole();
-  const Partition partition = partition_of(slabs, survey.field.parameters);
+  const Partition partition = partition_of(slabs);
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const float albedo = survey.albedo_at(points[i].viewer());
+    const float albedo = survey.albedo_at(points[i].wo);
     if (!(albedo > 0)) continue;
-    Slab& slab = slabs[slab_index(partition, points[i].viewer(), whole)];
+    const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
+    Slab& slab = slabs[find_slab(partition, known)];
     Leaf& leaf = slab.nodes[leaf_at(slab, points[i].p, domain)].leaf;
     const float ratio = values[i].upper / albedo;
-    leaf.note(ratio, known_of(points[i].viewer(), slab.box), points[i].p);
+    leaf.note(ratio, known_of(points[i].wo, slab.box.axes), points[i].p);
     leaf.raise((1 + margin) * ratio / shape(leaf, box_of(leaf.cell, domain), points[i].p));
   }
 }
@@ -255,7 +258,7 @@ void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& s
       const float v = ratios[i] * shape(leaf, box, points[i].p);
       const double square = double(ratios[i]) * double(v);
       sum += square, sum2 += square * square;
-      if (v > leaf.seen) leaf.note(v, known_of(points[i].viewer(), slabs[t.slab].box), points[i].p);
+      if (v > leaf.seen) leaf.note(v, known_of(points[i].wo, slabs[t.slab].box.axes), points[i].p);
     }
     const double n = double(t.count), square = sum / n;
     const double error = std::sqrt(max(sum2 / n - square * square, 0.) / n);

@@ -85,9 +85,7 @@ inline bool sum_above_one(Rgb a, Rgb b) {
 struct NamedValue {
   std::string_view name;
   Rgb value;
-  bool quiet = false;   // left out where it is 0
-  float up_to = 0;      // above `value`: a range, NAME=value..up_to
-  bool joined = false;  // with its twin of a pair: they vary together
+  bool quiet = false;  // left out where it is 0
 };
 std::string model_text(std::string_view model, std::span<const NamedValue> values);
 
