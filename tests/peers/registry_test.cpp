@@ -28,7 +28,7 @@ TEST(Registry, NamesAreUniqueAndFound) {
 // without bias where it says so: a mean of weights within five standard errors of the albedo.
 class EachSampler : public testing::TestWithParam<const SamplerInfo*> {};
 
-void judge(const SamplerInfo& info, const char* text) {
+void judge(const SamplerInfo& info, const char* text, int may_differ) {
   const Material material = parse_material(text);
   const PeerSubject subject{make_brdf(material), material, {}};
   const auto sampler = info.make(subject, {});
@@ -55,7 +55,7 @@ void judge(const SamplerInfo& info, const char* text) {
     sum += weight, squares += weight * weight;
   }
   // At the pole of a chart a direction in float no longer tells its place; hardly any is drawn there.
-  EXPECT_LE(differ, 2);
+  EXPECT_LE(differ, may_differ);
   const double mean = sum / draws, error = std::sqrt(std::max(squares / draws - mean * mean, 0.) / draws);
   if (info.unbiased) {
     EXPECT_NEAR(mean, albedo, 5 * error + 1e-3 * albedo);
@@ -64,9 +64,9 @@ void judge(const SamplerInfo& info, const char* text) {
   }
 }
 
-TEST_P(EachSampler, IsWhatItsRowSays) { judge(*GetParam(), "plastic:kd=0.5,alpha=0.4"); }
+TEST_P(EachSampler, IsWhatItsRowSays) { judge(*GetParam(), "plastic:kd=0.5,alpha=0.4", 0); }
 TEST_P(EachSampler, TakesAnisotropicFunctions) {
-  judge(*GetParam(), "plastic:alpha_x=0.3,alpha_y=0.6,phi_deg=20");
+  judge(*GetParam(), "plastic:alpha_x=0.3,alpha_y=0.6,phi_deg=20", 2);
 }
 
 std::vector<const SamplerInfo*> all_samplers() {
