@@ -31,12 +31,13 @@ std::string causes_of(const Diagnosis& d) {
   return causes;
 }
 
-void expect_sound(const std::string& name, const Patient& p, std::uint64_t seed = 1) {
+void expect_sound(const std::string& name, const Patient& p, std::uint64_t seed = 1,
+                  std::size_t checks = 30) {
   DoctorOptions options = doctor_options(DoctorEffort::quick);
   options.seed = seed;
   const Diagnosis d = doctor(p, options, two_threads());
   EXPECT_TRUE(d.healthy()) << name << ", seed " << seed << "\n" << all_words(d);
-  EXPECT_GT(d.checks.size(), 20u);
+  EXPECT_GT(d.checks.size(), checks);
 }
 
 void expect_named(const Entry& entry) {
@@ -141,7 +142,8 @@ std::vector<std::pair<std::string, Patient>> peers_of(const char* text) {
   return all;
 }
 TEST(Doctor, SaysNothingOfPeers) {
-  for (const auto& [name, p] : peers_of("plastic:alpha=0.2")) expect_sound(name, p);
+  for (const auto& [name, p] : peers_of("plastic:alpha=0.2"))
+    expect_sound(name, p, 1, 20);  // some have no density: fewer checks
 }
 
 TEST(LongDoctor, GivesNoFalseAlarmInAThousandRuns) {
