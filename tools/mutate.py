@@ -11,6 +11,7 @@ second run is quick.
     tools/mutate.py --only eight-trials     one
     tools/mutate.py --write                 and the table to docs/results/mutations.md
     tools/mutate.py --resume --write        the same, but only what the work folder has no result of
+    tools/mutate.py --check                 builds nothing: whether every fault can still be planted
 
 Results are kept in the work folder; the table has those of the whole list. The first run asks verify_whole about
 the sources without a fault.
@@ -169,6 +170,7 @@ def main():
     parser.add_argument("--tests", action="store_true", help="ask the test programs about every fault")
     parser.add_argument("--no-tests", action="store_true", help="ask verify alone")
     parser.add_argument("--resume", action="store_true", help="leave out what has a result")
+    parser.add_argument("--check", action="store_true", help="only see whether every fault can be planted")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--write", action="store_true", help="write docs/results/mutations.md")
     options = parser.parse_args()
@@ -177,6 +179,11 @@ def main():
         mutations = [m for m in mutations if m.name in options.only]
         if len(mutations) != len(set(options.only)):
             sys.exit("mutate: not every name is in the list")
+    if options.check:
+        lost = [m for m in mutations if m.planted((ROOT / m.file).read_text(encoding="utf-8")) is None]
+        print("\n".join(f"{m.name}: its lines are not found exactly once in {m.file}" for m in lost)
+              or f"{len(mutations)} faults can be planted")
+        return 1 if lost else 0
     kept = options.work / "results.json"
     results = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     if options.resume:

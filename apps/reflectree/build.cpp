@@ -41,6 +41,8 @@ void add_build(CLI::App& app, Context& context, Run& run) {
       "Examples:\n"
       "  reflectree build ggx:alpha=0.1 -o gold.rfl\n"
       "  reflectree build paper_white.bsdf -o paper.rfl --trials 1.1\n"
+      "  reflectree build ggx:alpha=0.02..1 -o metals.rfl\n"
+      "A parameter with a range makes a family: one sampler of every value inside.\n"
       "The file names its material; keep a measured file beside it, or in the folder of --data.");
   command->callback([&context, &run, o] {
     run = [&context, o] {
@@ -48,10 +50,16 @@ void add_build(CLI::App& app, Context& context, Run& run) {
       if (names_sampler_file(o->material, context.places())) {
         throw Error("is a sampler already", o->material, "name a material");
       }
-      OpenedSampler subject = open_sampler(context, o->material, o->choices);
-      save_sampler(o->output, subject.data);
-      subject.file_size = std::filesystem::file_size(o->output);
-      show_info(context, "build", subject);
+      const auto save = [&](auto subject) {
+        save_sampler(o->output, subject.data);
+        subject.file_size = std::filesystem::file_size(o->output);
+        show_info(context, "build", subject);
+      };
+      if (names_family(o->material, context.places())) {
+        save(open_family(context, o->material, o->choices));
+      } else {
+        save(open_sampler(context, o->material, o->choices));
+      }
       context.say("saved " + o->output);
       return int(exit_success);
     };

@@ -45,7 +45,7 @@ namespace {
 constexpr std::size_t drawn_samples = 200'000;
 
 struct Options {
-  std::string subject, output;
+  std::string subject, output, at;
   std::string theta_o_deg = "15,45,75";
   BuildChoices choices;
 };
@@ -86,7 +86,7 @@ std::vector<std::string> write_folder(const std::string& folder, const draw::Rep
 
 int run_draw(const Context& context, const Options& o) {
   const std::vector<double> theta_o_deg = parse_theta_o(o.theta_o_deg);
-  const OpenedSampler subject = open_sampler(context, o.subject, o.choices);
+  const OpenedSampler subject = open_sampler(context, o.subject, o.choices, o.at);
   const draw::ReportMaterial material = draw_material(subject, theta_o_deg, drawn_samples, context.seed);
   draw::ReportMeta meta;
   meta.command = "reflectree draw";
@@ -129,6 +129,7 @@ void add_draw(CLI::App& app, Context& context, Run& run) {
                    "Elevations of wo from the normal, with commas between them")
       ->type_name("DEG,...")
       ->capture_default_str();
+  add_member_choice(*command, o->at);
   add_build_choices(*command, o->choices);
   command->footer(
       "Examples:\n"

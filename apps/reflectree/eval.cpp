@@ -15,7 +15,7 @@ namespace reflectree::cli {
 namespace {
 
 struct Options {
-  std::string subject, output;
+  std::string subject, output, at;
   PairWords pairs;
   bool no_pdf = false;
   BuildChoices choices;
@@ -57,11 +57,14 @@ int run_eval(const Context& context, const Options& o) {
   Rows rows;
   if (o.no_pdf) {
     if (o.choices.given) throw Error("options of building do not apply", "--no-pdf", "leave them out");
+    if (!o.at.empty())
+      throw Error("densities of a member come from its family's sampler", "--at",
+                  "leave out --no-pdf, or write the number into the material");
     const AnyBrdf f = open_brdf(o.subject, context.places());
     material = f.traits().name;
     rows = evaluate(f, nullptr, pairs);
   } else {
-    const OpenedSampler subject = open_sampler(context, o.subject, o.choices);
+    const OpenedSampler subject = open_sampler(context, o.subject, o.choices, o.at);
     material = subject.data.material;
     rows = evaluate(subject.f, &subject.sampler, pairs);
   }
@@ -96,6 +99,7 @@ void add_eval(CLI::App& app, Context& context, Run& run) {
       ->add_option("-o,--output", o->output,
                    "A .npy file (float64), or a CSV file of any other name; default: stdout")
       ->type_name("FILE");
+  add_member_choice(*command, o->at);
   add_build_choices(*command, o->choices);
   command->footer(
       "Examples:\n"

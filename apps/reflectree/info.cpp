@@ -44,14 +44,35 @@ Leaves leaves_of(const std::vector<T>& trees) {
   return leaves;
 }
 
-Json json_of(const OpenedSampler& s, const std::vector<MeasuredFile>& measured) {
+// What is told of samplers and of those of families.
+struct Facts {
+  const SamplerData& data;
+  const PackedSampler& packed;
+  int channels;
+  const FilePlaces& places;
+  std::optional<std::uint64_t> file_size;
+  std::optional<double> build_seconds;
+};
+
+Json parameters_json(const SamplerData& d) {
+  Json all = Json::array();
+  for (const KnownParameter& p : d.parameters) {
+    all.push_back({{"name", p.range.name},
+                   {"from", shortest(p.range.lo)},
+                   {"to", shortest(p.range.hi)},
+                   {"logarithmic", p.logarithmic}});
+  }
+  return all;
+}
+
+Json json_of(const Facts& s, const std::vector<MeasuredFile>& measured) {
   const SamplerData& d = s.data;
   const auto certified = std::count_if(d.exact.begin(), d.exact.end(), [](const MajorantTree& tree) {
     return tree.status == BoundStatus::certified;
   });
   const auto [low, high] = std::minmax_element(d.albedo.albedo.begin(), d.albedo.albedo.end());
   Json json{{"material", d.material},
-            {"channels", s.f.channels()},
+            {"channels", s.channels},
             {"target", target_text(d.target)},
             {"domain", reflectree::name_of(d.domain.kind)},
             {"half_square", d.domain.half()},
@@ -65,7 +86,7 @@ Json json_of(const OpenedSampler& s, const std::vector<MeasuredFile>& measured) 
             {"one_shot_leaves", leaves_of(d.one_shot).total},
             {"certified_slabs", certified},
             {"estimated_slabs", std::ptrdiff_t(d.exact.size()) - certified},
-            {"bytes_in_memory", bytes_of(*s.packed)},
+            {"bytes_in_memory", bytes_of(s.packed)},
             {"bytes_on_disk", nullptr},
             {"albedo_minimum", shortest(*low)},
             {"albedo_maximum", shortest(*high)},
@@ -80,11 +101,12 @@ Json json_of(const OpenedSampler& s, const std::vector<MeasuredFile>& measured) 
             {"build_seconds", nullptr}};
   if (s.file_size) json["bytes_on_disk"] = *s.file_size;
   if (s.build_seconds) json["build_seconds"] = *s.build_seconds;
+  if (!d.parameters.empty()) json["parameters"] = parameters_json(d);
   json["measured"] = measured_json(measured);
   return json;
 }
 
-std::string bounds_text(const OpenedSampler& s) {
+std::string bounds_text(const Facts& s) {
   const auto certified =
       std::count_if(s.data.exact.begin(), s.data.exact.end(),
                     [](const MajorantTree& tree) { return tree.status == BoundStatus::certified; });
@@ -94,10 +116,8 @@ std::string bounds_text(const OpenedSampler& s) {
   return fmt::format("certified in {} slabs, estimated in {}", certified, estimated);
 }
 
-}  // namespace
-
-void show_info(const Context& context, const std::string& command, const OpenedSampler& s) {
-  const std::vector<MeasuredFile> measured = measured_files(s);
+void show(const Context& context, const std::string& command, const Facts& s) {
+  const std::vector<MeasuredFile> measured = measured_files(s.data.material, s.places);
   if (context.json) {
     context.print_json(command, json_of(s, measured));
     return;
@@ -109,22 +129,27 @@ void show_info(const Context& context, const std::string& command, const OpenedS
   const Leaves exact = leaves_of(d.exact), one_shot = leaves_of(d.one_shot);
   const auto [low, high] = std::minmax_element(d.albedo.albedo.begin(), d.albedo.albedo.end());
   line("material", d.material);
-  line("channels", std::to_string(s.f.channels()));
+  line("channels", std::to_string(s.channels));
   line("target", target_text(d.target));
   line("domain", std::string(reflectree::name_of(d.domain.kind)) +
                      (d.domain.half() ? ", half a square (mirror symmetry)" : ", whole square"));
-  const char* known = "theta_o";
+  std::string known = "theta_o";
   if (!d.frame.isotropic()) {
     known = "theta_o and phi_o";
     line("anisotropic", fmt::format("{}, axis at {:.4g} degrees", reflectree::name_of(d.frame.symmetry),
                                     d.frame.axis * 180 / pi));
+  }
+  for (const KnownParameter& p : d.parameters) {
+    known += " and " + p.range.name;
+    line("family", fmt::format("{} from {:.6g} to {:.6g}{}", p.range.name, p.range.lo, p.range.hi,
+                               p.logarithmic ? ", divided by its logarithm" : ""));
   }
   line("exact", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.exact.size(), known,
                             exact.total, exact.largest));
   line("one-shot", fmt::format("{} slabs of {}, {} leaves, at most {} in a slab", d.one_shot.size(), known,
                                one_shot.total, one_shot.largest));
   line("bounds", bounds_text(s));
-  line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(*s.packed)) / 1024));
+  line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(s.packed)) / 1024));
   if (s.file_size) line("on disk", fmt::format("{:.1f} KiB", double(*s.file_size) / 1024));
   line("albedo of target",
        fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g} up to 89.9 degrees",
@@ -141,6 +166,15 @@ void show_info(const Context& context, const std::string& command, const OpenedS
   for (const MeasuredFile& file : measured) {
     for (const auto& [name, value] : measured_lines(file)) line(name, value);
   }
+}
+
+}  // namespace
+
+void show_info(const Context& context, const std::string& command, const OpenedSampler& s) {
+  show(context, command, {s.data, *s.packed, s.f.channels(), s.places, s.file_size, s.build_seconds});
+}
+void show_info(const Context& context, const std::string& command, const OpenedFamily& s) {
+  show(context, command, {s.data, *s.packed, s.family.channels(), s.places, s.file_size, s.build_seconds});
 }
 
 void add_info(CLI::App& app, Context& context, Run& run) {
@@ -160,7 +194,11 @@ void add_info(CLI::App& app, Context& context, Run& run) {
       "  reflectree info --json ggx:alpha=0.1");
   command->callback([&context, &run, o] {
     run = [&context, o] {
-      show_info(context, "info", open_sampler(context, o->subject, o->choices));
+      if (names_family(o->subject, context.places())) {
+        show_info(context, "info", open_family(context, o->subject, o->choices));
+      } else {
+        show_info(context, "info", open_sampler(context, o->subject, o->choices));
+      }
       return int(exit_success);
     };
   });

@@ -58,11 +58,11 @@ Json counts_json(const Counts& counts, std::uint64_t pairs) {
 
 }  // namespace
 
-std::vector<MeasuredFile> measured_files(const OpenedSampler& subject) {
+std::vector<MeasuredFile> measured_files(const std::string& material, const FilePlaces& places) {
   std::vector<MeasuredFile> files;
-  for (const MaterialTerm& term : parse_material(subject.data.material, subject.places).terms) {
+  for (const MaterialTerm& term : parse_material(material, places).terms) {
     if (term.path.empty()) continue;
-    const Bytes bytes = read_material_file(term.path, subject.places);
+    const Bytes bytes = read_material_file(term.path, places);
     if (auto facts = measured_facts(bytes, term.path, term.member))
       files.push_back({file_text(term.path, term.member), *std::move(facts)});
   }

@@ -12,8 +12,8 @@ struct MeasuredFile {
   MeasuredFacts facts;
 };
 
-// One for each file that the subject's material names and of whose format something is known.
-std::vector<MeasuredFile> measured_files(const OpenedSampler& subject);
+// One for each file that the material names and of whose format something is known.
+std::vector<MeasuredFile> measured_files(const std::string& material, const FilePlaces& places);
 
 Json measured_json(const std::vector<MeasuredFile>& files);
 

@@ -12,7 +12,7 @@ namespace reflectree::cli {
 namespace {
 
 struct Options {
-  std::string subject, mode = "exact", output;
+  std::string subject, mode = "exact", output, at;
   double theta_o_deg = 45, phi_o_deg = 0;
   std::uint64_t count = 1000;
   BuildChoices choices;
@@ -50,7 +50,7 @@ int run_sample(const Context& context, const Options& o) {
     throw Error(fmt::format("{} is not above the surface", o.theta_o_deg), "--theta-o-deg",
                 "give degrees from 0 to below 90");
   }
-  const OpenedSampler subject = open_sampler(context, o.subject, o.choices);
+  const OpenedSampler subject = open_sampler(context, o.subject, o.choices, o.at);
   const double degree = pi_v<double> / 180;
   const Direction wo = direction_from_angles(float(o.theta_o_deg * degree), float(o.phi_o_deg * degree));
   const Sampler<AnyBrdf>& s = subject.sampler;
@@ -96,6 +96,7 @@ void add_sample(CLI::App& app, Context& context, Run& run) {
   command
       ->add_option("-o,--output", o->output, "A .npy file, or a CSV file of any other name; default: stdout")
       ->type_name("FILE");
+  add_member_choice(*command, o->at);
   add_build_choices(*command, o->choices);
   command->footer(
       "Examples:\n"

@@ -88,15 +88,47 @@ BuildOptions build_options(const Context& context, const BuildChoices& choices) 
   return options;
 }
 
-OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices) {
-  const FilePlaces places = context.places();
-  if (names_sampler_file(text, places)) {
-    if (choices.given) {
-      throw Error("options of building do not apply to a sampler that is built", text,
-                  "leave them out, or name the material");
-    }
-    return open_sampler_file(text, places);
+namespace {
+
+// Whether it is the file of a sampler, to which options of building do not apply.
+bool is_built(const std::string& text, const FilePlaces& places, const BuildChoices& choices) {
+  if (!names_sampler_file(text, places)) return false;
+  if (choices.given) {
+    throw Error("options of building do not apply to a sampler that is built", text,
+                "leave them out, or name the material");
   }
+  return true;
+}
+
+}  // namespace
+
+OpenedFamily open_family(const Context& context, const std::string& text, const BuildChoices& choices) {
+  const FilePlaces places = context.places();
+  if (is_built(text, places, choices)) return reflectree::open_family(text, places);
+  OpenedFamily family =
+      reflectree::open_family(text, places, build_options(context, choices), context.host("building"));
+  context.detail(fmt::format("built in {:.2f} s, {} evaluations", *family.build_seconds,
+                             family.data.report.evaluations));
+  return family;
+}
+
+void add_member_choice(CLI::App& command, std::string& at) {
+  command
+      .add_option("--at", at,
+                  "Of a family, such as ggx:alpha=0.02..1: the member that is meant, as alpha=0.3")
+      ->type_name("NAME=N,...");
+}
+
+OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices,
+                           const std::string& at) {
+  const FilePlaces places = context.places();
+  if (names_family(text, places)) {
+    if (at.empty()) throw Error("is a family", text, "say which member is meant, by --at NAME=NUMBER,...");
+    const OpenedFamily family = open_family(context, text, choices);
+    return open_member(family, parse_parameters(at, family.family.ranges()));
+  }
+  if (!at.empty()) throw Error("is no family", text, "leave out --at, or give a parameter a range");
+  if (is_built(text, places, choices)) return open_sampler_file(text, places);
   const BuildOptions options = build_options(context, choices);
   AnyBrdf f = open_brdf(text, places);
   check_target(options.target, f);

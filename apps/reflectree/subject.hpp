@@ -20,7 +20,12 @@ void add_build_choices(CLI::App& command, BuildChoices& choices);
 // Throws Error for words that mean nothing.
 BuildOptions build_options(const Context& context, const BuildChoices& choices);
 
-// As reflectree::open_sampler, with the user's choices. Throws Error, Cancelled.
-OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices);
+// As reflectree::open_sampler, with the user's choices. `at`: of a family, the parameters of its member that is
+// meant. Throws Error, Cancelled.
+OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices,
+                           const std::string& at = "");
+OpenedFamily open_family(const Context& context, const std::string& text, const BuildChoices& choices);
+// The option --at.
+void add_member_choice(CLI::App& command, std::string& at);
 
 }  // namespace reflectree::cli

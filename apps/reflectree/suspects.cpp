@@ -42,8 +42,18 @@ OpenedSampler with_fault(const std::string& fault, OpenedSampler subject) {
   return subject;
 }
 
-Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& fault) {
-  Suspect s = suspect(subject.sampler, subject.f, &subject.data);
+OpenedFamily with_fault(const std::string& fault, OpenedFamily subject) {
+  if (fault != "halved-bound") return subject;
+  subject.data = with_halved_bounds(std::move(subject.data));
+  subject.packed = std::make_shared<const PackedSampler>(pack(subject.data));
+  const auto family = std::make_shared<const Family<AnyFamily>>(subject.sampler.exact.family());
+  subject.sampler = {{family, subject.packed}, {family, subject.packed}};
+  return subject;
+}
+
+namespace {
+
+Suspect planted(Suspect s, const std::string& fault) {
   for (WayIn& way : s.ways) way = with_fault(std::move(way), fault);
   if (fault == "scaled-pdf") {
     for (auto* pdf : {&s.exact_pdf, &s.one_shot_pdf}) {
@@ -56,6 +66,19 @@ Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& faul
     }
   }
   return s;
+}
+
+}  // namespace
+
+Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& fault) {
+  return planted(suspect(subject.sampler, subject.f, &subject.data), fault);
+}
+
+Suspect suspect_with_fault(const OpenedFamily& subject, const Parameters& at, const MemberSampler& member,
+                           const std::string& fault) {
+  Suspect s = suspect(member, subject.family.member(at), &subject.data);
+  s.family = subject.family, s.at = at;
+  return planted(std::move(s), fault);
 }
 
 }  // namespace reflectree::cli

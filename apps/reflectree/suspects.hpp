@@ -17,4 +17,11 @@ OpenedSampler with_fault(const std::string& fault, OpenedSampler subject);
 // Borrows the subject. Any other fault is planted in every way into the sampler.
 Suspect suspect_with_fault(const OpenedSampler& subject, const std::string& fault);
 
+// A family, its data with the fault where it is one of data.
+OpenedFamily with_fault(const std::string& fault, OpenedFamily subject);
+// One of its members. Borrows both.
+using MemberSampler = Sampler<FamilyMember<AnyFamily>>;
+Suspect suspect_with_fault(const OpenedFamily& subject, const Parameters& at, const MemberSampler& member,
+                           const std::string& fault);
+
 }  // namespace reflectree::cli

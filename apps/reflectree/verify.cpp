@@ -12,7 +12,7 @@ namespace {
 struct Options {
   std::string subject, plant = "none", theta_o_deg = "0,30,60,80,89";
   std::uint64_t samples = VerifyOptions{}.samples, trials = VerifyOptions{}.trials;
-  int random_elevations = VerifyOptions{}.random_elevations;
+  int random_elevations = VerifyOptions{}.random_elevations, members = VerifyOptions{}.members;
   double effort = 1;
   BuildChoices choices;
 };
@@ -25,10 +25,20 @@ int run_verify(const Context& context, const Options& o) {
   options.random_elevations = o.random_elevations;
   options.effort = o.effort;
   options.seed = context.seed;
-  const OpenedSampler subject = with_fault(o.plant, open_sampler(context, o.subject, o.choices));
   Verdicts verdicts(context, o.plant);
   options.on_check = [&](const CheckResult& check) { verdicts.add(check); };
   options.on_figure = [&](const VerifyFigure& figure) { verdicts.add(figure); };
+  if (names_family(o.subject, context.places())) {
+    const OpenedFamily family = with_fault(o.plant, open_family(context, o.subject, o.choices));
+    const auto judge = [&](const Parameters& at, const VerifyOptions& each, const Host& host) {
+      const MemberSampler member = family.sampler.at(at);
+      return verify(suspect_with_fault(family, at, member, o.plant), each, host);
+    };
+    options.members = o.members;
+    return verdicts.finish(family.data.material,
+                           verify_members(family.family.ranges(), judge, options, context.host("checking")));
+  }
+  const OpenedSampler subject = with_fault(o.plant, open_sampler(context, o.subject, o.choices));
   const VerifyReport report = verify(suspect_with_fault(subject, o.plant), options, context.host("checking"));
   return verdicts.finish(subject.data.material, report);
 }
@@ -48,6 +58,11 @@ void add_verify(CLI::App& app, Context& context, Run& run) {
       ->type_name("DEG,...")
       ->capture_default_str();
   command->add_option("--random", o->random_elevations, "Further elevations, chosen by the seed")
+      ->check(CLI::Range(0, 1000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--members", o->members, "Of a family: members anywhere in its ranges, besides both ends")
       ->check(CLI::Range(0, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();

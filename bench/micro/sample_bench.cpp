@@ -6,8 +6,10 @@
 
 #include <vector>
 
+#include "reflectree/brdf/material/model_family.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
 #include "reflectree/math/low_discrepancy.hpp"
+#include "reflectree/sampler/family_sampler.hpp"
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/simd/sample_batch.hpp"
 
@@ -86,6 +88,23 @@ void one_shot_monotone(benchmark::State& state) {
   });
 }
 BENCHMARK(one_shot_monotone)->Arg(300)->Arg(100)->Arg(10);
+
+// Every sample is one of another member of the family, as under a texture.
+const FamilySampler<ModelFamily<Ggx>>& family() {
+  static const auto sampler = make_sampler(model_family(Ggx{}, {{"alpha", 0.02f, 1}}));
+  return sampler;
+}
+float any_alpha(Pcg32& u) { return 0.02f + 0.98f * to_unit_float(u()); }
+void family_exact(benchmark::State& state) {
+  const auto& sampler = family().exact;
+  run(state, [&](Direction wo, Pcg32& u) { return gathered(sampler.sample(wo, {any_alpha(u)}, u)); });
+}
+BENCHMARK(family_exact);
+void family_one_shot_alias(benchmark::State& state) {
+  const auto& sampler = family().one_shot;
+  run(state, [&](Direction wo, Pcg32& u) { return gathered(sampler.sample(wo, {any_alpha(u)}, u)); });
+}
+BENCHMARK(family_one_shot_alias);
 
 // 256 directions per call; the time is that of the call, items_per_second counts directions.
 constexpr std::size_t batch_size = 256;

@@ -142,7 +142,7 @@ void read_target(ByteReader& in, SamplerData& data) {
 }
 
 void read_domain(ByteReader& in, SamplerData& data) {
-  data.domain.kind = read_kind(in, DomainKind::slope_star, "domain");
+  data.domain.kind = read_kind(in, DomainKind::scaled_star, "domain");
   data.domain.symmetry = read_kind(in, Symmetry::mirror, "symmetry");
   data.domain.exponent = read_float(in);
 }
@@ -196,6 +196,24 @@ void read_anisotropy(ByteReader& in, SamplerData& data) {
   data.albedo.even = is_mirrored(data.frame.symmetry);
 }
 
+void read_family(ByteReader& in, SamplerData& data) {
+  data.parameters.resize(read_count(in, 21, max_parameters));
+  for (KnownParameter& p : data.parameters) {
+    p.range.name = read_words(in), p.range.lo = read_float(in), p.range.hi = read_float(in);
+    p.logarithmic = in.u8() != 0;
+    AlbedoAxis axis;
+    axis.lo = read_float(in), axis.hi = read_float(in), axis.rows = in.u32();
+    data.albedo.parameters.push_back(axis);
+  }
+  for (auto* law : {&data.law.x, &data.law.y}) {
+    for (float& v : *law) v = read_float(in);
+  }
+}
+
+void read_widths(ByteReader& in, SamplerData& data) {
+  data.domain.scale_x = read_float(in), data.domain.scale_y = read_float(in);
+}
+
 struct ChunkReader {
   std::string_view tag;
   bool required;
@@ -216,6 +234,8 @@ constexpr ChunkReader chunk_readers[] = {
     {"PRCH", false, [](ByteReader& in, SamplerData& data) { data.probes.channels = read_floats(in); }},
     {"NOTE", false, read_notes},
     {"ANIS", false, read_anisotropy},
+    {"FMLY", false, read_family},
+    {"WDTH", false, read_widths},
 };
 
 const ChunkReader* find_reader(std::string_view tag) {
@@ -299,6 +319,24 @@ Bytes encode_sampler(const SamplerData& data) {
       append_u8(p, std::uint8_t(data.frame.symmetry)), append_f32(p, data.frame.axis);
       append_f32(p, data.domain.stretch), append_floats(p, data.albedo.phi_o);
     });
+  }
+  if (!data.parameters.empty()) {
+    chunk("FMLY", [&](Bytes& p) {
+      append_u32(p, std::uint32_t(data.parameters.size()));
+      for (std::size_t i = 0; i < data.parameters.size(); ++i) {
+        const KnownParameter& q = data.parameters[i];
+        const AlbedoAxis& axis = data.albedo.parameters[i];
+        append_words(p, q.range.name), append_f32(p, q.range.lo), append_f32(p, q.range.hi);
+        append_u8(p, q.logarithmic ? 1 : 0);
+        append_f32(p, axis.lo), append_f32(p, axis.hi), append_u32(p, axis.rows);
+      }
+      for (const auto* law : {&data.law.x, &data.law.y}) {
+        for (const float v : *law) append_f32(p, v);
+      }
+    });
+  }
+  if (data.domain.scale_x != 1 || data.domain.scale_y != 1) {
+    chunk("WDTH", [&](Bytes& p) { append_f32(p, data.domain.scale_x), append_f32(p, data.domain.scale_y); });
   }
   if (data.target.scale != 1) chunk("SCAL", [&](Bytes& p) { append_f32(p, data.target.scale); });
   if (!data.probes.channels.empty())

@@ -31,16 +31,45 @@ std::vector<float> probe_channels(const AnyBrdf& f) {
   return values;
 }
 
+// Each pair asks another member: the first ones at the ends of the ranges, the others anywhere.
+std::vector<float> probe_channels(const AnyFamily& family) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < BrdfProbes::count; ++i) {
+    Direction wo, wi;
+    probe_pair(i, wo, wi);
+    Pcg32 u(i, 78);
+    Parameters at{};
+    for (std::size_t k = 0; k < family.ranges().size(); ++k) {
+      const ParameterRange& range = family.ranges()[k];
+      const float share = i < 4 ? float(i >> k & 1U) : to_unit_float(u());
+      const KnownParameter p{range, is_logarithmic(range)};
+      at[k] = value_of(p, linear_mix(share, lowest(p), highest(p)));
+    }
+    Spectrum value(family.channels());  // zero below the surface
+    if (wo.z > 0 && wi.z > 0) value = family(shading_geometry(wo, wi), at);
+    values.insert(values.end(), value.data(), value.data() + value.channels());
+  }
+  return values;
+}
+
+// Of functions without a name every channel is kept.
+BrdfProbes probes_of(std::vector<float> values, int channels, bool is_named, const Target& target) {
+  BrdfProbes probes;
+  for (std::size_t i = 0; i < BrdfProbes::count; ++i)
+    probes.target[i] = target(values.data() + i * std::size_t(channels), channels);
+  if (channels > 1 && !is_named) probes.channels = std::move(values);
+  return probes;
+}
+
 }  // namespace
 
 BrdfProbes probe_identity(const AnyBrdf& f, const Target& target) {
-  std::vector<float> values = probe_channels(f);
-  BrdfProbes probes;
-  for (std::size_t i = 0; i < BrdfProbes::count; ++i) {
-    probes.target[i] = target(values.data() + i * std::size_t(f.channels()), f.channels());
-  }
-  if (f.channels() > 1 && f.traits().name == BrdfTraits{}.name) probes.channels = std::move(values);
-  return probes;
+  return probes_of(probe_channels(f), f.channels(), f.traits().name != BrdfTraits{}.name, target);
+}
+
+BrdfProbes probe_identity(const AnyFamily& family, const Target& target) {
+  const bool is_named = family.traits().name != Family<AnyFamily>{family, {}}.name;
+  return probes_of(probe_channels(family), family.channels(), is_named, target);
 }
 
 namespace {
@@ -51,14 +80,15 @@ float miss_of(float a, float b, float floor) {
   return isfinite(miss) ? miss : 2;
 }
 
-[[noreturn]] void refuse(const std::string& what, const SamplerData& data, const AnyBrdf& f) {
-  throw Error("the sampler was built for another BRDF: " + what, f.traits().name,
+[[noreturn]] void refuse(const std::string& what, const SamplerData& data, const std::string& name) {
+  throw Error("the sampler was built for another BRDF: " + what, name,
               "load it with the material '" + data.material + "', or build it again");
 }
 
-}  // namespace
-
-void check_identity(const SamplerData& data, const AnyBrdf& f, float relative_tolerance) {
+// F: AnyBrdf or AnyFamily.
+template <class F>
+void compare(const SamplerData& data, const F& f, float relative_tolerance) {
+  const std::string& name = f.traits().name;
   const BrdfProbes now = probe_identity(f, data.target);
   std::size_t worst = 0;
   float worst_miss = 0;
@@ -70,14 +100,14 @@ void check_identity(const SamplerData& data, const AnyBrdf& f, float relative_to
   if (worst_miss > relative_tolerance) {
     std::snprintf(text, sizeof text, "at probe %zu its target was %.6g, here it is %.6g", worst,
                   double(data.probes.target[worst]), double(now.target[worst]));
-    refuse(text, data, f);
+    refuse(text, data, name);
   }
   const std::vector<float>& channels = data.probes.channels;
   if (channels.empty()) return;
   const std::size_t count = channels.size() / BrdfProbes::count;
   if (count != std::size_t(f.channels())) {
     refuse("it has " + std::to_string(count) + " channels, here there are " + std::to_string(f.channels()),
-           data, f);
+           data, name);
   }
   const std::vector<float> here = probe_channels(f);
   for (std::size_t k = 0; k < channels.size(); ++k) {
@@ -88,8 +118,29 @@ void check_identity(const SamplerData& data, const AnyBrdf& f, float relative_to
     if (miss_of(channels[k], here[k], floor) <= relative_tolerance) continue;
     std::snprintf(text, sizeof text, "at probe %zu its channel %zu was %.6g, here it is %.6g", i, c,
                   double(channels[k]), double(here[k]));
-    refuse(text, data, f);
+    refuse(text, data, name);
   }
+}
+
+}  // namespace
+
+void check_identity(const SamplerData& data, const AnyBrdf& f, float relative_tolerance) {
+  if (!data.parameters.empty()) {
+    throw Error("the sampler is of a family, and this is one function", f.traits().name,
+                "give it the family '" + data.material + "'");
+  }
+  compare(data, f, relative_tolerance);
+}
+
+void check_identity(const SamplerData& data, const AnyFamily& family, float relative_tolerance) {
+  const std::vector<ParameterRange>& ranges = family.ranges();
+  bool same = data.parameters.size() == ranges.size();
+  for (std::size_t i = 0; same && i < ranges.size(); ++i) same = data.parameters[i].range == ranges[i];
+  if (!same) {
+    throw Error("the sampler was built for other ranges", family.traits().name,
+                "load it with the material '" + data.material + "', or build it again");
+  }
+  compare(data, family, relative_tolerance);
 }
 
 }  // namespace reflectree

@@ -28,8 +28,8 @@ void index(const Partition& partition, PackedForest& forest) {
 
 // visit(tree) of every slab: of one coordinate in order of the cosine, of more in that of the partition.
 template <class Tree, class Visit>
-void in_packed_order(const std::vector<Tree>& trees, const ViewerFrame& frame, const Visit& visit) {
-  if (frame.isotropic()) {
+void in_packed_order(const std::vector<Tree>& trees, const Partition& partition, const Visit& visit) {
+  if (partition.coordinates.size() == 1) {
     for (auto tree = trees.rbegin(); tree != trees.rend(); ++tree) visit(*tree);
   } else {
     for (const Tree& tree : trees) visit(tree);
@@ -66,13 +66,17 @@ std::size_t bytes_of(const PackedForest& forest) {
 
 PackedViewer pack_viewer(const SamplerData& data) {
   PackedViewer viewer{pack(data.albedo), data.frame};
+  viewer.parameters = data.parameters, viewer.law = data.law;
   viewer.turns = data.frame.isotropic() || !data.domain.follows_surface();
   viewer.cos_axis = cos(data.frame.axis), viewer.sin_axis = sin(data.frame.axis);
   return viewer;
 }
 
 std::size_t slab_of(const Partition& partition, const Incidence& in) {
-  const float known[2] = {theta_of(in.wo), in.phi_o};
+  const std::size_t axes = partition.coordinates.size();
+  float known[2 + max_parameters] = {theta_of(in.wo), in.phi_o};
+  const bool azimuth = axes > 1 && partition.coordinates[1].name == "phi_o";
+  if (axes > (azimuth ? 2 : 1)) std::copy_n(in.known_beyond.begin(), axes - 1, known + 1);  // of a family
   return find_slab(partition, known);
 }
 
@@ -83,11 +87,11 @@ PackedSampler pack(const SamplerData& data) {
   packed.target = data.target;
   packed.viewer = pack_viewer(data);
   index(data.exact_partition, packed.exact);
-  in_packed_order(data.exact, data.frame, [&](const MajorantTree& tree) {
+  in_packed_order(data.exact, data.exact_partition, [&](const MajorantTree& tree) {
     append(tree, double(tree.volume) / total_mass(tree), packed.exact);
   });
   index(data.one_shot_partition, packed.one_shot);
-  in_packed_order(data.one_shot, data.frame, [&](const DensityTree& tree) {
+  in_packed_order(data.one_shot, data.one_shot_partition, [&](const DensityTree& tree) {
     const std::vector<std::uint32_t> mass = append(tree, 0, packed.one_shot);
     packed.one_shot.slabs.back().first_node = std::uint32_t(packed.one_shot.nodes.size());
     append_descent(tree, mass, packed.one_shot.nodes);

@@ -32,15 +32,16 @@ struct Place {
 };
 
 // Down the packed tree by halving cells; the shares of probability play no part.
-std::optional<Place> locate(const PackedSampler& packed, Direction wo, Direction wi) {
+std::optional<Place> locate(const PackedSampler& packed, const Parameters& member, Direction wo,
+                            Direction wi) {
   Incidence in;
-  if (!find_incidence(packed.viewer, wo, in)) return std::nullopt;
+  if (!find_incidence(packed, wo, member, in)) return std::nullopt;
   const bool half = packed.domain.half();
   Direction local = to_incidence(in, wi);
   if (half) local.y = std::abs(local.y);
-  const Vec2<float> p = lower(packed.domain, in.wo, local);
+  const Vec2<float> p = lower(domain_at(packed.viewer, packed.domain, in), in.wo, local);
   const PackedForest& forest = packed.one_shot;
-  const PackedSlab& slab = forest.slab_at(in);
+  const PackedSlab& slab = slab_at(packed, forest, in);
   const DescentNode* node = forest.nodes.data() + slab.first_node;
   std::size_t leaf = 0;
   double x = -1, y = half ? 0 : -1, width = 2, length = half ? 1 : 2;
@@ -175,7 +176,7 @@ CheckResult distinct_result(const Suspect& s, std::uint64_t draws, std::uint64_t
     std::vector<std::vector<Place>> by_leaf;
     for (std::uint64_t i = 0; i < draws; ++i) {
       const auto wi = s.propose(wo, u);
-      const auto at = wi ? locate(*s.packed, wo, *wi) : std::nullopt;
+      const auto at = wi ? locate(*s.packed, s.at, wo, *wi) : std::nullopt;
       if (!at) continue;
       if (by_leaf.size() <= at->leaf) by_leaf.resize(at->leaf + 1);
       by_leaf[at->leaf].push_back(*at);
@@ -228,7 +229,7 @@ Part places_of(const Suspect& s, const DrawDirections& draw, std::uint64_t draws
     std::vector<std::optional<Direction>> drawn(chunk);
     draw(wo, u, drawn);
     for (const auto& wi : drawn) {
-      const auto at = wi ? locate(*s.packed, wo, *wi) : std::nullopt;
+      const auto at = wi ? locate(*s.packed, s.at, wo, *wi) : std::nullopt;
       if (!at) continue;
       ++parts[c].seen;
       parts[c].x.add(at->gx, at->tx);

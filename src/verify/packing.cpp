@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "reflectree/math/random.hpp"
+
 namespace reflectree {
 namespace {
 
@@ -36,7 +38,26 @@ std::string text(const char* format, double a, double b = 0, double c = 0) {
   return buffer;
 }
 
+// Of a family: at random places, as the canonical table interpolates.
+CheckResult check_family_albedo(const SamplerData& data, const PackedSampler& packed) {
+  Worst worst;
+  Pcg32 u(1, 37);
+  for (int k = 0; k < 4000; ++k) {
+    const float c = std::max(std::exp(-8 * to_unit_float(u())), min_cos_theta_o);
+    const float phi = azimuth_span(data.frame.symmetry) * to_unit_float(u());
+    Coordinates at{};
+    for (std::size_t i = 0; i < data.parameters.size(); ++i)
+      at[i] = linear_mix(to_unit_float(u()), lowest(data.parameters[i]), highest(data.parameters[i]));
+    const double expected = double(albedo_at(data.albedo, c, phi, at)),
+                 found = double(packed.viewer.albedo.at(c, phi, at));
+    worst.see(std::abs(found - expected), 2e-5 * expected + 1e-30,
+              text("cos theta_o %.6g: %.8g for %.8g", double(c), found, expected));
+  }
+  return worst.result("packed_albedo");
+}
+
 CheckResult check_albedo(const SamplerData& data, const PackedSampler& packed) {
+  if (!data.parameters.empty()) return check_family_albedo(data, packed);
   Worst worst;
   const AlbedoTable& table = data.albedo;
   const std::size_t columns = table.cos_theta_o.size();
@@ -78,7 +99,21 @@ void check_borders(const char* mode, const Partition& partition, const PackedFor
   const std::vector<SlabBox> boxes = slab_boxes(partition);
   worst.must(forest.slabs.size() == boxes.size(), std::string(mode) + ": one packed slab per slab");
   if (forest.slabs.size() != boxes.size()) return;
-  for (std::size_t s = 0; s < boxes.size() && !forest.tree.empty(); ++s) {
+  const std::size_t axes = partition.coordinates.size();
+  const bool family = axes > 1 && partition.coordinates.back().name != "phi_o";
+  for (std::size_t s = 0; s < boxes.size() && family; ++s) {
+    for (const float x : {0.001f, 0.5f, 0.999f}) {
+      const float theta = linear_mix(x, boxes[s].lo[0], boxes[s].hi[0]);
+      for (const float y : {0.001f, 0.5f, 0.999f}) {
+        std::array<float, 1 + max_parameters> others{};
+        for (std::size_t a = 1; a < axes; ++a) others[a - 1] = linear_mix(y, boxes[s].lo[a], boxes[s].hi[a]);
+        const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), others.data());
+        worst.must(found == s, std::string(mode) +
+                                   text(", theta_o %.6g, slab %.0f: another slab", double(theta), double(s)));
+      }
+    }
+  }
+  for (std::size_t s = 0; s < boxes.size() && !forest.tree.empty() && !family; ++s) {
     for (const float x : {0.001f, 0.5f, 0.999f}) {
       for (const float y : {0.001f, 0.5f, 0.999f}) {
         const float theta = linear_mix(x, boxes[s].lo[0], boxes[s].hi[0]);

@@ -107,31 +107,69 @@ struct Bounds {
 
 }  // namespace
 
-RatioFunction bound_ratio(AnyBrdf f, const SamplerData& data) {
+namespace {
+
+// eval(geometry, members, values).
+template <class Eval>
+RatioFunction ratio_of(std::size_t channels, const SamplerData& data, Eval eval) {
   const auto bounds = std::make_shared<const Bounds>(data);
-  return [bounds, f = std::move(f), &data](std::span<const AttackPoint> points, std::span<double> ratio) {
-    const auto channels = std::size_t(f.channels());
-    const bool isotropic = data.frame.isotropic();
+  return [bounds, channels, eval, &data](std::span<const AttackPoint> points, std::span<double> ratio) {
+    const bool isotropic = data.frame.isotropic(), turned = isotropic && data.parameters.empty();
     std::vector<ShadingGeometry<float>> geometry;
+    std::vector<Parameters> members;
     std::vector<std::size_t> index;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec2<float> p = square_point(data.domain.symmetry, float(points[i][1]), float(points[i][2]));
       const float theta = 89.999f * (pi / 180) * float(points[i][0]);
       const float phi = isotropic ? 0.f : data.frame.axis + 2 * pi * float(points[i][3]);
+      Coordinates at{};
+      for (std::size_t k = 0; k < data.parameters.size(); ++k) {
+        const KnownParameter& q = data.parameters[k];
+        at[k] = linear_mix(float(points[i][(isotropic ? 3 : 4) + k]), lowest(q), highest(q));
+      }
+      const Parameters member = values_of(data.parameters, at);
       ratio[i] = 0;
       Incidence in;
-      if (!find_incidence(bounds->viewer, direction_from_angles(theta, phi), in)) continue;
-      const DomainPoint at = lift(data.domain, in.wo, p);
-      if (!(at.projected_area > 0)) continue;
-      ratio[i] = double(at.projected_area) / (double(in.albedo) * bounds->at(in, p));
-      geometry.push_back(known_geometry(in, at.geometry, isotropic)), index.push_back(i);
+      const Direction wo = direction_from_angles(theta, phi);
+      if (data.parameters.empty() ? !find_incidence(bounds->viewer, wo, in)
+                                  : !find_incidence(bounds->viewer, wo, member, in)) {
+        continue;
+      }
+      const DomainPoint lifted = lift(domain_at(bounds->viewer, data.domain, in), in.wo, p);
+      if (!(lifted.projected_area > 0)) continue;
+      ratio[i] = double(lifted.projected_area) / (double(in.albedo) * bounds->at(in, p));
+      geometry.push_back(known_geometry(in, lifted.geometry, turned));
+      members.push_back(member), index.push_back(i);
     }
     std::vector<float> values(geometry.size() * channels);
-    f.eval(geometry, values);
+    eval(geometry, members, values);
     for (std::size_t k = 0; k < index.size(); ++k) {
       ratio[index[k]] *= double(data.target(values.data() + k * channels, int(channels)));
     }
   };
+}
+
+}  // namespace
+
+RatioFunction bound_ratio(AnyBrdf f, const SamplerData& data) {
+  const auto channels = std::size_t(f.channels());
+  return ratio_of(
+      channels, data,
+      [f = std::move(f)](std::span<const ShadingGeometry<float>> geometry, std::span<const Parameters>,
+                         std::span<float> values) { f.eval(geometry, values); });
+}
+
+RatioFunction bound_ratio(AnyFamily family, const SamplerData& data) {
+  const auto channels = std::size_t(family.channels());
+  return ratio_of(channels, data,
+                  [family = std::move(family)](std::span<const ShadingGeometry<float>> geometry,
+                                               std::span<const Parameters> members, std::span<float> values) {
+                    family.eval(geometry, members, values);
+                  });
+}
+
+int attack_coordinates(const SamplerData& data) {
+  return (data.frame.isotropic() ? 3 : 4) + int(data.parameters.size());
 }
 
 }  // namespace reflectree

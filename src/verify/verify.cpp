@@ -40,6 +40,7 @@ class Hearing {
  public:
   Hearing(const Suspect& suspect, const VerifyOptions& options, const Host& host)
       : s_(suspect), o_(options), host_(host), f_(target_function(suspect.f, suspect.target)) {
+    if (s_.family) member_ = to_text(s_.family->ranges(), s_.at);
     const int viewers = int(o_.theta_o_deg.size()) + std::max(o_.random_elevations, 0);
     chi_.family_significance = o_.family_significance;
     // Chi-square, weights, mean, channels, lanes: of each way at each viewer; and what comes once.
@@ -76,12 +77,12 @@ class Hearing {
   }
 
   void add(CheckResult result) {
-    result.where = where_;
+    result.where = s_.family ? member_ + ", " + where_ : where_;
     o_.on_check(result);
     report_.checks.push_back(std::move(result));
   }
   void inform(const char* name, double value) {
-    report_.figures.push_back({name, where_, value});
+    report_.figures.push_back({name, s_.family ? member_ + ", " + where_ : where_, value});
     o_.on_figure(report_.figures.back());
   }
 
@@ -102,8 +103,8 @@ class Hearing {
   // How often exact mode may run out of trials in n draws.
   double expected_none(Direction wo, std::uint64_t n) const {
     Incidence in;
-    if (!find_incidence(s_.packed->viewer, wo, in)) return 0;
-    const double volume = double(s_.packed->exact.slab_at(in).volume);
+    if (!find_incidence(*s_.packed, wo, s_.at, in)) return 0;
+    const double volume = double(slab_at(*s_.packed, s_.packed->exact, in).volume);
     return volume > 1 ? double(n) * std::pow(1 - 1 / (1.02 * volume), 256) : 0;
   }
 
@@ -215,9 +216,11 @@ class Hearing {
     if (s_.data) {
       AttackOptions options;
       options.seed = detail::mixed_seed(o_.seed, 8);
-      options.coordinates = s_.data->frame.isotropic() ? 3 : 4;
+      options.coordinates = attack_coordinates(*s_.data);
       if (o_.effort < 1) options.probes = std::size_t(scaled_count(options.probes, 1 << 14));
-      attacked = attack(bound_ratio(s_.f, *s_.data), options, host_).worst;
+      attacked =
+          attack(s_.family ? bound_ratio(*s_.family, *s_.data) : bound_ratio(s_.f, *s_.data), options, host_)
+              .worst;
       inform("worst_ratio_under_attack", attacked);
     }
     if (sums.trials == 0) return;
@@ -272,11 +275,48 @@ class Hearing {
   TargetFunction f_;
   ChiSquareOptions chi_;
   std::string where_;
+  std::string member_;                                                           // of a family: which one
   std::map<std::pair<std::size_t, std::string>, std::vector<double>> p_values_;  // by way and check
   VerifyReport report_;
 };
 
 }  // namespace
+
+std::vector<Parameters> members_to_verify(const std::vector<ParameterRange>& ranges, int anywhere,
+                                          std::uint64_t seed) {
+  std::vector<Parameters> members(2);
+  for (std::size_t i = 0; i < ranges.size(); ++i) members[0][i] = ranges[i].lo, members[1][i] = ranges[i].hi;
+  Pcg32 u = detail::part_generator(seed, 30);
+  for (int k = 0; k < anywhere; ++k) {
+    members.emplace_back();
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const KnownParameter p{ranges[i], is_logarithmic(ranges[i])};
+      members.back()[i] = value_of(p, linear_mix(to_unit_float(u()), lowest(p), highest(p)));
+    }
+  }
+  return members;
+}
+
+VerifyReport verify_members(
+    const std::vector<ParameterRange>& ranges,
+    const std::function<VerifyReport(const Parameters&, const VerifyOptions&, const Host&)>& judge,
+    const VerifyOptions& options, const Host& host) {
+  const std::vector<Parameters> members = members_to_verify(ranges, options.members, options.seed);
+  VerifyOptions each = options;
+  each.effort /= double(members.size()), each.family_significance /= double(members.size());
+  VerifyReport all;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Host part = host;
+    part.progress = [&host, i, &members](float fraction) {
+      if (host.progress) host.progress((float(i) + fraction) / float(members.size()));
+    };
+    VerifyReport one = judge(members[i], each, part);
+    all.checks.insert(all.checks.end(), one.checks.begin(), one.checks.end());
+    all.figures.insert(all.figures.end(), one.figures.begin(), one.figures.end());
+    if (i == 0) all.notes = std::move(one.notes);
+  }
+  return all;
+}
 
 VerifyReport verify(const Suspect& suspect, const VerifyOptions& options, const Host& host) {
   return Hearing(suspect, options, host).run();

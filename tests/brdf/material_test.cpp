@@ -40,6 +40,78 @@ TEST(Material, APairIsSetTogether) {
   EXPECT_FALSE(make_brdf(parse_material("ward:alpha_y=0.3")).traits().isotropic);
 }
 
+TEST(Material, ARangeMakesAFamily) {
+  const Material m = parse_material("0.3*lambert:rho=0.5 + ggx:alpha = 0.02 .. 1");
+  EXPECT_TRUE(is_family(m));
+  EXPECT_FALSE(is_family(parse_material("ggx:alpha=0.02")));
+  EXPECT_EQ(to_text(m), "0.3*lambert:rho=0.5 + ggx:alpha=0.02..1,f0=1/0.8/0.3");
+  EXPECT_EQ(parse_material(to_text(m)), m);
+  const AnyFamily family = make_family(m);
+  EXPECT_EQ(family.ranges(), (std::vector<ParameterRange>{{"alpha", 0.02f, 1}}));
+  EXPECT_EQ(family.traits().name, to_text(m));
+  EXPECT_EQ(to_text(member_of(m, {0.3f})), "0.3*lambert:rho=0.5 + ggx:alpha=0.3,f0=1/0.8/0.3");
+  const AnyBrdf member = make_brdf(member_of(m, {0.3f}));
+  const ShadingGeometry<float> g =
+      shading_geometry(direction_from_angles(0.5f, 0.2f), direction_from_angles(0.6f, 3.f));
+  const Spectrum a = family(g, {0.3f}), b = member(g), c = family.member({0.3f})(g), d = family(g, {0.31f});
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_FLOAT_EQ(a[k], b[k]);
+    EXPECT_FLOAT_EQ(a[k], c[k]);
+    EXPECT_NE(a[k], d[k]);
+  }
+}
+
+TEST(Material, TwoRangesVaryApartOrTogether) {
+  for (const char* text : {"ggx:alpha_x=0.05..1,alpha_y=0.05..1,f0=1", "ggx:alpha=0.05..1,f0=1",
+                           "ggx:alpha_x=0.05..1,alpha_y=0.05,f0=1", "phong:kd=0.2,ks=0.6,n=1..1000",
+                           "ward:kd=0.2,ks=0.6,alpha=0.1,phi_deg=0..90",
+                           "lambert:rho=0.5 + ggx:alpha=0.1..1,f0=1 + phong:kd=0,ks=0.1,n=1..90"}) {
+    const Material m = parse_material(text);
+    EXPECT_EQ(to_text(m), text);
+    EXPECT_EQ(parse_material(to_text(m)), m);
+  }
+  const AnyFamily family = make_family(parse_material("ggx:alpha_x=0.05..1,alpha_y=0.1..0.5,f0=1"));
+  EXPECT_EQ(family.ranges(), (std::vector<ParameterRange>{{"alpha_x", 0.05f, 1}, {"alpha_y", 0.1f, 0.5f}}));
+  const ShadingGeometry<float> g =
+      shading_geometry(direction_from_angles(0.5f, 0.2f), direction_from_angles(0.6f, 3.f));
+  EXPECT_FLOAT_EQ(family(g, {0.3f, 0.2f})[0],
+                  make_brdf(parse_material("ggx:alpha_x=0.3,alpha_y=0.2,f0=1"))(g)[0]);
+  EXPECT_EQ(family.traits({0.3f, 0.2f}).name, "ggx:alpha_x=0.3,alpha_y=0.2,f0=1");
+}
+
+TEST(Material, ErrorsOfRangesSayWhatWhereAndHow) {
+  const auto words = [](const char* text) -> std::string {
+    try {
+      const Material m = parse_material(text);
+      if (is_family(m)) make_family(m);
+      return "";
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  for (const auto& [text, part] : std::vector<std::pair<const char*, const char*>>{
+           {"ggx:alpha=1..0.02",
+            "column 11: the range of alpha is from 1 to 0.02; give the smaller number first"},
+           {"ggx:alpha=0.1..0.1", "smaller number first"},
+           {"ggx:alpha=0.02..2", "out of range"},
+           {"ggx:alpha=0..1", "out of range"},
+           {"ggx:alpha=0.1..", "expected a number"},
+           {"ggx:alpha=..1", "expected a number"},
+           {"ggx:alpha=0.1..0.2..0.3", "unexpected"},
+           {"ggx:f0=0.1..0.2", "colour"},
+           {"ggx:f0=0.1/0.2/0.3..1", "colour"},
+           {"ggx:alpha=0.1/0.2/0.3..1", "one number"},
+           {"ggx:alpha=0.1..0.2 + plastic:alpha=0.1..0.2", "both named alpha"},
+           {"ggx:alpha_x=0.1..0.2,alpha_y=0.1..0.2 + phong:n=1..2", "more than two ranges"},
+           {"ggx:alpha=0.1..0.2,alpha_x=0.1", "given twice"},
+           {"lambert:sigma=0..1", "unknown parameter"}}) {
+    EXPECT_NE(words(text).find(part), std::string::npos) << text << ": " << words(text);
+  }
+  EXPECT_THROW(make_brdf(parse_material("ggx:alpha=0.1..0.2")), Error);
+  EXPECT_THROW(make_family(parse_material("ggx:alpha=0.1")), Error);
+  EXPECT_THROW(member_of(parse_material("ggx:alpha=0.1..0.2"), {0.3f}), Error);
+}
+
 TEST(Material, AWordWithAMarkIsAFile) {
   const Material m =
       parse_material("0.5*dir/a-b.bsdf + ./x#chm_mint + \"a b+c\\\"\\\\\"#\"m 1\" + lambert#m");

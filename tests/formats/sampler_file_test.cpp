@@ -14,6 +14,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/formats/checksum.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/sampler/member.hpp"
 #include "reflectree/sampler/sampler.hpp"
 #include "synthetic_sampler.hpp"
 
@@ -86,6 +87,69 @@ TEST(SamplerFile, ScaleNotesAndProbesOfChannelsReturn) {
   EXPECT_THROW(encode_sampler(data), Error);
   data.target.scale = 1, data.probes.channels.pop_back();
   EXPECT_THROW(encode_sampler(data), Error);
+}
+
+TEST(SamplerFile, FamiliesReturn) {
+  const SamplerData data = synthetic::family_data();
+  const Bytes bytes = encode_sampler(data);
+  EXPECT_EQ(decode_sampler(bytes, "file"), data);
+  EXPECT_EQ(encode_sampler(decode_sampler(bytes, "file")), bytes);
+  // A reader that does not know of families must refuse, and whoever knows must not do without.
+  Bytes without = bytes;
+  without[find(bytes, "FMLY")] = 'X';
+  EXPECT_NE(words_of(with_checksum(without)).find("XMLY"), std::string::npos);
+  without[find(bytes, "FMLY") + 6] = 1;
+  EXPECT_NE(words_of(with_checksum(without)), "");
+}
+
+TEST(SamplerFile, ReadsTheGoldenFileOfAFamily) {
+  const std::string path = REFLECTREE_SOURCE "/golden/family_v1.rfl";
+  const Bytes bytes = read_file(path, 1 << 20);
+  const SamplerData data = decode_sampler(bytes, path);
+  EXPECT_EQ(encode_sampler(data), bytes);
+  EXPECT_EQ(data.parameters, (std::vector<KnownParameter>{{{"alpha", 0.02f, 1}, true}}));
+  EXPECT_EQ(data.law.x, (std::array<float, 3>{0.1f, 0.7f, 0}));
+  EXPECT_EQ(data.albedo.parameters[0].rows, 4U);
+}
+
+TEST(SamplerFile, MembersOfFamiliesReturn) {
+  const SamplerData family = synthetic::family_data();
+  for (const float alpha : {0.02f, 0.1f, 0.2f, 1.f}) {
+    const SamplerData data = member_data(family, {alpha}, "ggx", family.probes);
+    // The slab above 0.75 is cut at a logarithm of -2, alpha = 0.135.
+    EXPECT_EQ(data.exact.size(), 2U);
+    EXPECT_EQ(data.exact[1], family.exact[alpha < 0.135f ? 1 : 2]);
+    EXPECT_NEAR(data.domain.scale_x, std::exp(0.1 + 0.7 * std::log(double(alpha))), 1e-5);
+    EXPECT_NEAR(data.domain.scale_y, std::exp(0.1 + 0.6 * std::log(double(alpha))), 1e-5);
+    EXPECT_EQ(decode_sampler(encode_sampler(data), "file"), data);
+  }
+  for (const float alpha : {0.019f, 1.1f, NAN})
+    EXPECT_THROW(member_data(family, {alpha}, "ggx", family.probes), Error);
+  EXPECT_THROW(member_data(synthetic::sampler_data(), {0.1f}, "ggx", family.probes), Error);
+}
+
+TEST(SamplerFile, RefusesFamiliesThatAreNotValid) {
+  const auto refused = [](const char* word, const auto& spoil) {
+    SamplerData data = synthetic::family_data();
+    spoil(data);
+    try {
+      encode_sampler(data);
+      ADD_FAILURE() << word;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    }
+  };
+  refused("range", [](SamplerData& d) { d.parameters[0].range.hi = 2; });
+  refused("smaller number", [](SamplerData& d) { d.parameters[0].range.hi = 0.01f; });
+  refused("not positive", [](SamplerData& d) { d.parameters[0].range.lo = 0; });
+  refused("another name", [](SamplerData& d) { d.exact_partition.coordinates[1].name = "beta"; });
+  refused("widths", [](SamplerData& d) { d.law.x[1] = 5; });
+  refused("axes", [](SamplerData& d) { d.albedo.parameters.clear(), d.albedo.albedo.resize(3); });
+  refused("axis", [](SamplerData& d) { d.albedo.parameters[0].hi = 0.5f; });
+  refused("rows", [](SamplerData& d) { d.albedo.parameters[0].rows = 3, d.albedo.albedo.resize(9); });
+  refused("value each", [](SamplerData& d) { d.albedo.albedo.pop_back(); });
+  refused("widths", [](SamplerData& d) { d.domain.scale_x = 0.5f; });
+  refused("known coordinates", [](SamplerData& d) { d.parameters.clear(), d.law = {}; });
 }
 
 TEST(SamplerFile, SavesAndLoadsABuiltSamplerThatSamplesAlike) {
@@ -169,19 +233,25 @@ TEST(SamplerFile, CanDoWithoutItsReportButNotWithoutATree) {
 }
 
 // Behind a mended checksum, only the file that lost exactly its optional last chunk is whole.
-TEST(SamplerFile, RefusesEveryTruncation) {
-  const Bytes file = encode_sampler(synthetic::sampler_data());
+class SamplerFileDamage : public ::testing::TestWithParam<SamplerData> {};
+INSTANTIATE_TEST_SUITE_P(All, SamplerFileDamage,
+                         ::testing::Values(synthetic::sampler_data(), synthetic::family_data()),
+                         [](const auto& of) { return of.index == 0 ? "OfOne" : "OfAFamily"; });
+
+TEST_P(SamplerFileDamage, RefusesEveryTruncation) {
+  const Bytes file = encode_sampler(GetParam());
   int whole = 0;
   for (std::size_t n = 0; n < file.size(); ++n) {
     const Bytes shorter(file.begin(), file.begin() + std::ptrdiff_t(n));
     ASSERT_NE(words_of(shorter), "") << n;
     if (n >= 12 && words_of(with_checksum(shorter)).empty()) ++whole;
   }
-  EXPECT_EQ(whole, 1);
+  EXPECT_EQ(whole, GetParam().parameters.empty() ? 1 : 0)
+      << "the last chunk of a family is none of the optional";
 }
 
-TEST(SamplerFile, NoticesEveryFlippedBit) {
-  Bytes file = encode_sampler(synthetic::sampler_data());
+TEST_P(SamplerFileDamage, NoticesEveryFlippedBit) {
+  Bytes file = encode_sampler(GetParam());
   for (std::size_t bit = 0; bit < file.size() * 8; ++bit) {
     const auto mask = std::uint8_t(1U << (bit % 8));
     file[bit / 8] ^= mask;
@@ -191,8 +261,8 @@ TEST(SamplerFile, NoticesEveryFlippedBit) {
 }
 
 // Behind a right checksum a flip is refused, or leads to data that is valid, packs, and writes again.
-TEST(SamplerFile, SurvivesEveryFlippedBitBehindAMendedChecksum) {
-  Bytes file = encode_sampler(synthetic::sampler_data());
+TEST_P(SamplerFileDamage, SurvivesEveryFlippedBitBehindAMendedChecksum) {
+  Bytes file = encode_sampler(GetParam());
   int refused = 0, accepted = 0;
   for (std::size_t bit = 0; bit + 32 < file.size() * 8; ++bit) {
     const auto mask = std::uint8_t(1U << (bit % 8));

@@ -34,4 +34,23 @@ inline SamplerData sampler_data() {
   return data;
 }
 
+// The same of a family: two slabs of theta_o, the upper one cut in two by alpha.
+inline SamplerData family_data() {
+  SamplerData data = sampler_data();
+  data.material = "ggx:alpha=0.02..1,f0=1";
+  data.domain = {DomainKind::scaled_star, Symmetry::mirror};
+  data.parameters = {{{"alpha", 0.02f, 1}, true}};
+  data.law.x = {0.1f, 0.7f, 0}, data.law.y = {0.1f, 0.6f, 0};
+  const float lo = lowest(data.parameters[0]), hi = highest(data.parameters[0]);
+  const std::vector<KnownCoordinate> coordinates{{"theta_o", 0, 1.5707887f}, {"alpha", lo, hi}};
+  data.exact_partition = {
+      coordinates, {0, Partition::leaf, 1, Partition::leaf, Partition::leaf}, {0.75f, -2}};
+  data.exact.push_back(data.exact.back());
+  data.one_shot_partition = {coordinates, {Partition::leaf}, {}};
+  data.albedo.parameters = {{lo, hi, 4}};
+  data.albedo.albedo.clear();
+  for (int i = 0; i < 12; ++i) data.albedo.albedo.push_back(1 - 0.03f * float(i));
+  return data;
+}
+
 }  // namespace reflectree::synthetic

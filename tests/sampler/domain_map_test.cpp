@@ -13,10 +13,16 @@ namespace {
 constexpr double elevations_deg[] = {0, 0.01, 15, 45, 70, 85, 89, 89.9, 89.999};
 
 std::vector<Domain> domains(Symmetry symmetry) {
-  return {{DomainKind::projected_disk, symmetry, 0}, {DomainKind::equal_area, symmetry, 0},
-          {DomainKind::half_vector, symmetry, 0},    {DomainKind::back_vector, symmetry, 0},
-          {DomainKind::stretched, symmetry, 1.5f},   {DomainKind::mirror_vector, symmetry, 0},
-          {DomainKind::normal_vector, symmetry, 0},  {DomainKind::stretched, symmetry, 1.1f}};
+  return {{DomainKind::projected_disk, symmetry, 0},
+          {DomainKind::equal_area, symmetry, 0},
+          {DomainKind::half_vector, symmetry, 0},
+          {DomainKind::back_vector, symmetry, 0},
+          {DomainKind::stretched, symmetry, 1.5f},
+          {DomainKind::mirror_vector, symmetry, 0},
+          {DomainKind::normal_vector, symmetry, 0},
+          {DomainKind::stretched, symmetry, 1.1f},
+          {DomainKind::scaled_star, symmetry, 0, 1, 0.1f, 0.1f},
+          {DomainKind::scaled_star, symmetry, 0, 1, 0.07f, 0.4f}};
 }
 std::string label(const Domain& d, double theta) {
   return std::string(name_of(d.kind)) + (d.half() ? " half" : "") + " theta_o " + std::to_string(theta);

@@ -113,10 +113,10 @@ TEST(Lanes, TheOneFormulaOfEachModelServesLanes) {
 
 TEST(Lanes, PointsAreLiftedAsByFloats) {
   Pcg32 u(13);
-  for (const DomainKind kind :
-       {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector, DomainKind::back_vector,
-        DomainKind::stretched, DomainKind::mirror_vector, DomainKind::normal_vector}) {
-    const Domain domain{kind, Symmetry::none, 1.5f};
+  for (const DomainKind kind : {DomainKind::projected_disk, DomainKind::equal_area, DomainKind::half_vector,
+                                DomainKind::back_vector, DomainKind::stretched, DomainKind::mirror_vector,
+                                DomainKind::normal_vector, DomainKind::scaled_star}) {
+    const Domain domain{kind, Symmetry::none, 1.5f, 1, 0.3f, 0.6f};
     int different = 0;
     for (int round = 0; round < 300; ++round) {
       Direction wo[lane_count];

@@ -99,7 +99,7 @@ TEST(AgreementTwin, LuminanceInPlaceOfTheNorm) {
   BuildOptions luminance;
   luminance.target.kind = TargetKind::luminance;
   const auto sampler = make_sampler(coloured(), luminance);
-  Suspect s = suspect(sampler, AnyBrdf(coloured()));
+  Suspect s = suspect_of(sampler);
   EXPECT_FALSE(fails(judge(s), "target"));
   s.target.kind = TargetKind::norm;
   const auto results = judge(s);

@@ -7,7 +7,8 @@
 #include <algorithm>
 
 #include "reflectree/brdf/models/plastic.hpp"
-#include "reflectree/verify/ways.hpp"
+#include "reflectree/sampler/sampler.hpp"
+#include "reflectree/verify/suspect.hpp"
 
 namespace reflectree {
 
@@ -25,22 +26,13 @@ inline const Plastic& coloured() {
 struct Built {
   SamplerData data;
   Sampler<Plastic> sampler;
-  Suspect suspect() const { return reflectree::suspect(sampler, AnyBrdf(coloured()), &data); }
+  Suspect suspect() const;
 };
-inline const Built& built() {
-  static const Built b = [] {
-    SamplerData data = build(AnyBrdf(coloured()));
-    Sampler<Plastic> sampler = make_sampler(coloured(), data);
-    return Built{std::move(data), std::move(sampler)};
-  }();
-  return b;
-}
+const Built& built();
 
 // The same from data or a packed form of one's own.
-inline Sampler<Plastic> sampler_of(PackedSampler packed) {
-  const auto shared = std::make_shared<const PackedSampler>(std::move(packed));
-  return {ExactSampler<Plastic>(coloured(), shared), OneShotSampler<Plastic>(coloured(), shared)};
-}
+Sampler<Plastic> sampler_of(PackedSampler packed);
+Suspect suspect_of(const Sampler<Plastic>& sampler, const SamplerData* data = nullptr);
 
 inline bool fails(std::span<const CheckResult> results, const std::string& name) {
   bool found = false, failed = false;

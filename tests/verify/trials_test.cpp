@@ -3,6 +3,7 @@
 #include "reflectree/verify/trials.hpp"
 
 #include "reflectree/verify/faults.hpp"
+#include "reflectree/verify/ways.hpp"
 #include "simple_samplers.hpp"
 #include "suspects.hpp"
 
@@ -90,7 +91,7 @@ TEST(Overshoot, TheVerdictSaysWhatTrialsCanTell) {
 
 TEST(OvershootTwin, HalvedBoundsFail) {
   const Sampler<Plastic> sampler = sampler_of(pack(with_halved_bounds(built().data)));
-  const Suspect s = suspect(sampler, AnyBrdf(coloured()));
+  const Suspect s = suspect_of(sampler);
   const TrialLog log = watch_trials(s, s.ways[0], 300'000, 1);
   EXPECT_FALSE(check_overshoot(overshoot_mass(log.sums)).passed);
 }

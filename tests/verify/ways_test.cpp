@@ -4,6 +4,7 @@
 
 #include "reflectree/verify/faults.hpp"
 #include "reflectree/verify/way_tally.hpp"
+#include "reflectree/verify/ways.hpp"
 #include "simple_samplers.hpp"
 #include "suspects.hpp"
 
@@ -100,10 +101,10 @@ TEST(WaysTwin, TwoOfTwelveChannelsExchanged) {
       return t;
     }
   };
-  const Twelve twelve{f};
+  const AnyBrdf twelve(Twelve{f});
   const auto sampler = make_sampler(twelve);
-  const Suspect s = suspect(sampler, AnyBrdf(twelve));
-  const Bins there = equal_mass_bins(target_function(AnyBrdf(twelve)), wo);
+  const Suspect s = suspect(sampler, twelve);
+  const Bins there = equal_mass_bins(target_function(twelve), wo);
   const auto references = channel_references(s.f, wo, 3);
   EXPECT_EQ(references.size(), 4u);
   const WayTally right = tally_of(s, s.ways[0], there, samples, 1);

@@ -137,8 +137,12 @@ BrdfTraits traits_of(const F& f) {
 template <Brdf F>
 bool is_isotropic_by_formula(const F& f) {
   if constexpr (requires {
-                  { f.traits() } -> std::convertible_to<BrdfTraits>;
+                  { f.may_be_turned() } -> std::convertible_to<bool>;
                 }) {
+    return f.may_be_turned();  // without the cost of all traits
+  } else if constexpr (requires {
+                         { f.traits() } -> std::convertible_to<BrdfTraits>;
+                       }) {
     return f.traits().isotropic_by_formula;
   } else {
     return false;

@@ -12,7 +12,7 @@
 #include "reflectree/formats/bytes.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/build.hpp"
-#include "reflectree/sampler/sampler.hpp"
+#include "reflectree/sampler/family_sampler.hpp"
 
 namespace reflectree {
 
@@ -54,6 +54,30 @@ struct OpenedSampler {
   std::optional<std::uint64_t> file_size;  // of the sampler file
   std::optional<double> build_seconds;     // of a sampler that was built
 };
+
+// A family with its sampler.
+struct OpenedFamily {
+  std::string text;
+  AnyFamily family;
+  SamplerData data;
+  std::shared_ptr<const PackedSampler> packed;
+  FamilySampler<AnyFamily> sampler;
+  FilePlaces places;
+  std::string sampler_file;
+  std::optional<std::uint64_t> file_size;
+  std::optional<double> build_seconds;
+};
+
+// Whether the text is of a material with ranges, or names the file of its sampler. Throws Error for what
+// names neither material nor sampler.
+bool names_family(const std::string& text, const FilePlaces& places);
+// Builds or loads it. Throws Error, Cancelled.
+OpenedFamily open_family(const std::string& text, const FilePlaces& places = {},
+                         const BuildOptions& options = {}, const Host& host = {});
+// Its member as a sampler like any other (member.hpp). Throws Error outside of the ranges.
+OpenedSampler open_member(const OpenedFamily& family, const Parameters& at);
+// "alpha=0.3" or "alpha_x=0.1,alpha_y=0.3": a number for each parameter, in any order. Throws Error.
+Parameters parse_parameters(const std::string& text, const std::vector<ParameterRange>& ranges);
 
 // Builds the sampler of `f`, which `text` names. Throws Error, Cancelled.
 OpenedSampler build_named_sampler(const std::string& text, AnyBrdf f, const FilePlaces& places,

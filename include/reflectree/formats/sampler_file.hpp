@@ -15,6 +15,9 @@
 // Where there is something to say:
 //   ANIS  of anisotropic functions: symmetry:u8 axis:f32 stretch:f32 phi_o:f32... (albedos row by row)
 //   SCAL  target.scale:f32, unless it is 1
+//   FMLY  of families: (name lo:f32 hi:f32 logarithmic:u8 axis of the albedo: lo:f32 hi:f32 rows:u32)...,
+//         the law of the widths x:f32[3] y:f32[3] (albedos: the last parameter outermost)
+//   WDTH  of a member cut out of a family: the widths of its domain, x:f32 y:f32
 //   PRCH* every channel at the 64 probes: f32..., of functions without a name
 //   NOTE* sentences about what was promised and is not kept
 //

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
 
@@ -26,5 +26,7 @@ struct BuildOptions {
 // out of range. Cancelled when the host says so. What is promised and not kept is in report.notes, in words.
 // The result does not depend on the host's threads.
 SamplerData build(const AnyBrdf& f, const BuildOptions& options = {}, const Host& host = {});
+// One sampler of every member of a family, by the same promises for each.
+SamplerData build(const AnyFamily& family, const BuildOptions& options = {}, const Host& host = {});
 
 }  // namespace reflectree

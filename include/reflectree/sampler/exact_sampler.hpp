@@ -19,13 +19,14 @@
 
 namespace reflectree {
 
-template <Brdf F>
+// `Data` points to what is shared; who makes a sampler of a family's member for each sample borrows it.
+template <Brdf F, class Data = std::shared_ptr<const PackedSampler>>
 class ExactSampler {
  public:
   using Value = ValueOf<F>;
   static constexpr int max_trials = 256;
 
-  ExactSampler(F f, std::shared_ptr<const PackedSampler> packed)
+  ExactSampler(F f, Data packed)
       : f_(std::move(f)),
         packed_(std::move(packed)),
         turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
@@ -38,9 +39,9 @@ class ExactSampler {
   template <RandomBits U, class Stats = NoStatistics>
   std::optional<DirectionSample<Value>> sample(Direction wo, U& u, Stats&& stats = {}) const {
     Incidence in;
-    if (!find_incidence(packed_->viewer, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->exact.slab_at(in);
-    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    if (!find(wo, in)) return std::nullopt;
+    const PackedSlab& slab = slab_of(in);
+    return with_known_kind(domain_at(in), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
       for (int trial = 0; trial < max_trials; ++trial) {
         const Candidate c = propose(domain, slab, in, u);
         if (accept(c, in, u, stats)) return std::optional(finish(c, in));
@@ -57,13 +58,14 @@ class ExactSampler {
   template <RandomBits U, class Stats = NoStatistics>
   std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out, Stats&& stats = {}) const {
     Incidence in;
-    if (!find_incidence(packed_->viewer, wo, in)) return 0;
-    const PackedSlab& slab = packed_->exact.slab_at(in);
+    if (!find(wo, in)) return 0;
+    const PackedSlab& slab = slab_of(in);
+    const Domain member = domain_at(in);
     std::size_t filled = 0;
     for (int round = 0; round < max_trials && filled < out.size(); ++round) {
       detail::divide(slab, packed_->exact.leaves.data() + slab.first, out.size() - filled, u,
                      [&](const detail::ChosenLeaf& leaf) {
-                       const Candidate c = place(packed_->domain, leaf, in, u);
+                       const Candidate c = place(member, leaf, in, u);
                        if (accept(c, in, u, stats)) out[filled++] = finish(c, in);
                      });
     }
@@ -77,9 +79,9 @@ class ExactSampler {
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample_once(Direction wo, U& u) const {
     Incidence in;
-    if (!find_incidence(packed_->viewer, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->exact.slab_at(in);
-    const Candidate c = propose(packed_->domain, slab, in, u);
+    if (!find(wo, in)) return std::nullopt;
+    const PackedSlab& slab = slab_of(in);
+    const Candidate c = propose(domain_at(in), slab, in, u);
     if (!accept(c, in, u, NoStatistics{})) return std::nullopt;
     const float ratio = c.target / in.albedo;
     const float density = min(ratio, c.majorant) / slab.volume;  // per share of the square
@@ -93,7 +95,7 @@ class ExactSampler {
   // Per projected solid angle: t / a(wo).
   float pdf_disk(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(packed_->viewer, wo, in)) return 0;
+    if (!(wi.z > 0) || !find(wo, in)) return 0;
     const Value value =
         eval(f_, turned_ ? shading_geometry(in.wo, to_incidence(in, wi)) : shading_geometry(wo, wi));
     return packed_->target(value) / in.albedo;
@@ -101,13 +103,13 @@ class ExactSampler {
   // a(wo) of the target, from the table; 0 for no sample.
   float albedo(Direction wo) const {
     Incidence in;
-    return find_incidence(packed_->viewer, wo, in) ? in.albedo : 0.f;
+    return find(wo, in) ? in.albedo : 0.f;
   }
   // sum(V) of the slab of wo: the expected trials, up to the error of the albedo table.
   float expected_trials(Direction wo) const {
     Incidence in;
-    if (!find_incidence(packed_->viewer, wo, in)) return 0;
-    return packed_->exact.slab_at(in).volume;
+    if (!find(wo, in)) return 0;
+    return slab_of(in).volume;
   }
 
  private:
@@ -152,8 +154,19 @@ class ExactSampler {
             scaled_value(c.value, in.albedo / t), sample_reflection};
   }
 
+  REFLECTREE_INLINE bool find(Direction wo, Incidence& in) const {
+    return detail::find_incidence_of(f_, *packed_, wo, in);
+  }
+  REFLECTREE_INLINE const PackedSlab& slab_of(const Incidence& in) const {
+    return detail::slab_of<F>(packed_->exact, in);
+  }
+  // With the widths of the member, of families.
+  REFLECTREE_INLINE Domain domain_at(const Incidence& in) const {
+    return detail::domain_of(f_, *packed_, in);
+  }
+
   F f_;
-  std::shared_ptr<const PackedSampler> packed_;
+  Data packed_;
   bool turned_;
 };
 

@@ -23,12 +23,13 @@ REFLECTREE_INLINE bool are_uniforms(double u1, double u2) { return u1 >= 0 && u1
 
 }  // namespace detail
 
-template <Brdf F>
+// `Data` points to what is shared; who makes a sampler of a family's member for each sample borrows it.
+template <Brdf F, class Data = std::shared_ptr<const PackedSampler>>
 class OneShotSampler {
  public:
   using Value = ValueOf<F>;
 
-  OneShotSampler(F f, std::shared_ptr<const PackedSampler> packed)
+  OneShotSampler(F f, Data packed)
       : f_(std::move(f)),
         packed_(std::move(packed)),
         turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
@@ -65,12 +66,12 @@ class OneShotSampler {
   template <RandomBits U>
   std::size_t sample_n(Direction wo, U& u, std::span<DirectionSample<Value>> out) const {
     Incidence in;
-    if (out.empty() || !find_incidence(packed_->viewer, wo, in)) return 0;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in);
+    if (out.empty() || !find(wo, in)) return 0;
+    const PackedSlab& slab = slab_of(in);
+    const Domain member = domain_at(in);
     std::size_t filled = 0;
-    detail::divide(
-        slab, packed_->one_shot.leaves.data() + slab.first, out.size(), u,
-        [&](const detail::ChosenLeaf& leaf) { out[filled++] = sample_in(packed_->domain, leaf, in, u); });
+    detail::divide(slab, packed_->one_shot.leaves.data() + slab.first, out.size(), u,
+                   [&](const detail::ChosenLeaf& leaf) { out[filled++] = sample_in(member, leaf, in, u); });
     return filled;
   }
 
@@ -78,8 +79,8 @@ class OneShotSampler {
   // outside of [0, 1] are no sample.
   std::optional<DirectionSample<Value>> sample(Direction wo, double u1, double u2) const {
     Incidence in;
-    if (!detail::are_uniforms(u1, u2) || !find_incidence(packed_->viewer, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in);
+    if (!detail::are_uniforms(u1, u2) || !find(wo, in)) return std::nullopt;
+    const PackedSlab& slab = slab_of(in);
     const bool half = packed_->domain.half(), below = half && u2 < 0.5;
     if (half) u2 = below ? 1 - 2 * u2 : 2 * u2 - 1;  // continuous across the plane of incidence
     const DescentNode* node = packed_->one_shot.nodes.data() + slab.first_node;
@@ -101,7 +102,7 @@ class OneShotSampler {
     u1 = (u1 - lo[0]) / size[0];
     u2 = (u2 - lo[1]) / size[1];
     const detail::PointInLeaf at = detail::place(*leaf, half, min(float(u1), 1.f), min(float(u2), 1.f));
-    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    return with_known_kind(domain_at(in), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
       return std::optional(finish(domain, in, at, below));
     });
   }
@@ -109,26 +110,26 @@ class OneShotSampler {
   // The uniforms that `sample(wo, u1, u2)` takes to wi, up to rounding; nullopt below the horizon.
   std::optional<Vec2<double>> invert(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(packed_->viewer, wo, in)) return std::nullopt;
+    if (!(wi.z > 0) || !find(wo, in)) return std::nullopt;
     const bool half = packed_->domain.half();
     Direction local = to_incidence(in, wi);
     const bool below = half && local.y < 0;
     if (half) local.y = abs(local.y);
-    const PackedSlab& slab = packed_->one_shot.slab_at(in);
-    const detail::Located at = locate(slab, lower(packed_->domain, in.wo, local));
+    const PackedSlab& slab = slab_of(in);
+    const detail::Located at = locate(slab, lower(domain_at(in), in.wo, local));
     return Vec2<double>{at.u1, !half ? at.u2 : below ? 0.5 * (1 - at.u2) : 0.5 * (1 + at.u2)};
   }
 
   // Per solid angle, sr^-1; by point location, without evaluating f.
   float pdf(Direction wo, Direction wi) const {
     Incidence in;
-    if (!(wi.z > 0) || !find_incidence(packed_->viewer, wo, in)) return 0;
+    if (!(wi.z > 0) || !find(wo, in)) return 0;
     Direction local = to_incidence(in, wi);
-    local = fold(packed_->domain.symmetry, local);
-    const Vec2<float> p = lower(packed_->domain, in.wo, local);
-    const DomainPoint point = lift(packed_->domain, in.wo, p);
-    return locate(packed_->one_shot.slab_at(in), p).density * point.geometry.cos_theta_i /
-           point.projected_area;
+    const Domain member = domain_at(in);
+    local = fold(member.symmetry, local);
+    const Vec2<float> p = lower(member, in.wo, local);
+    const DomainPoint point = lift(member, in.wo, p);
+    return locate(slab_of(in), p).density * point.geometry.cos_theta_i / point.projected_area;
   }
   // Per projected solid angle.
   float pdf_disk(Direction wo, Direction wi) const { return wi.z > 0 ? pdf(wo, wi) / wi.z : 0.f; }
@@ -144,11 +145,11 @@ class OneShotSampler {
   template <class Made, RandomBits U, class Make>
   REFLECTREE_INLINE std::optional<Made> in_chosen_leaf(Direction wo, U& u, const Make& make) const {
     Incidence in;
-    if (!find_incidence(packed_->viewer, wo, in)) return std::nullopt;
-    const PackedSlab& slab = packed_->one_shot.slab_at(in);
+    if (!find(wo, in)) return std::nullopt;
+    const PackedSlab& slab = slab_of(in);
     const detail::ChosenLeaf leaf =
         detail::choose_leaf(slab, packed_->one_shot.leaves.data() + slab.first, detail::bits64(u));
-    return with_known_kind(packed_->domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    return with_known_kind(domain_at(in), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
       return std::optional<Made>(make(domain, leaf, in));
     });
   }
@@ -175,8 +176,19 @@ class OneShotSampler {
             known_geometry(in, point.geometry, turned_), inverse};
   }
 
+  REFLECTREE_INLINE bool find(Direction wo, Incidence& in) const {
+    return detail::find_incidence_of(f_, *packed_, wo, in);
+  }
+  REFLECTREE_INLINE const PackedSlab& slab_of(const Incidence& in) const {
+    return detail::slab_of<F>(packed_->one_shot, in);
+  }
+  // With the widths of the member, of families.
+  REFLECTREE_INLINE Domain domain_at(const Incidence& in) const {
+    return detail::domain_of(f_, *packed_, in);
+  }
+
   F f_;
-  std::shared_ptr<const PackedSampler> packed_;
+  Data packed_;
   bool turned_;
 };
 

@@ -23,6 +23,10 @@ struct PackedForest {
   const PackedSlab& slab_at(const Incidence& in) const {
     return tree.empty() ? slab_at(in.wo.z) : slabs[tree(in.wo.z, in.phi_o)];
   }
+  // Of families.
+  const PackedSlab& family_slab_at(const Incidence& in) const {
+    return slabs[tree(in.wo.z, in.known_beyond.data())];
+  }
 };
 
 struct PackedSampler {
@@ -31,6 +35,61 @@ struct PackedSampler {
   PackedForest exact, one_shot;
   PackedViewer viewer;
 };
+
+namespace detail {
+
+// What a function of type F needs to know of its viewer, where it is a BRDF or a family's member alike.
+template <class F>
+REFLECTREE_INLINE bool find_incidence_of(const F& f, const PackedSampler& packed, Direction wo,
+                                         Incidence& out) {
+  if constexpr (is_member_v<F>) {
+    return find_incidence(packed.viewer, wo, f.at, out);
+  } else {
+    return find_incidence(packed.viewer, wo, out);
+  }
+}
+template <class F>
+REFLECTREE_INLINE const PackedSlab& slab_of(const PackedForest& forest, const Incidence& in) {
+  if constexpr (is_member_v<F>) {
+    return forest.family_slab_at(in);
+  } else {
+    return forest.slab_at(in);
+  }
+}
+template <class F>
+REFLECTREE_INLINE Domain domain_of(const F&, const PackedSampler& packed, const Incidence& in) {
+  Domain domain = packed.domain;
+  if constexpr (is_member_v<F>) domain.scale_x = in.scale_x, domain.scale_y = in.scale_y;
+  return domain;
+}
+// Of one member, whoever looks.
+template <class F>
+REFLECTREE_INLINE Domain domain_of_all(const F& f, const PackedSampler& packed) {
+  Domain domain = packed.domain;
+  if constexpr (is_member_v<F>) {
+    Coordinates at{};
+    for (std::size_t i = 0; i < packed.viewer.parameters.size(); ++i)
+      at[i] = coordinate_of(packed.viewer.parameters[i], f.at[i]);
+    domain.scale_x = scale_by(packed.viewer.law.x, at), domain.scale_y = scale_by(packed.viewer.law.y, at);
+  }
+  return domain;
+}
+
+}  // namespace detail
+
+// The same for who learns at run time whether there are parameters; without any, `at` does not matter.
+inline bool find_incidence(const PackedSampler& packed, Direction wo, const Parameters& at, Incidence& out) {
+  return packed.viewer.parameters.empty() ? find_incidence(packed.viewer, wo, out)
+                                          : find_incidence(packed.viewer, wo, at, out);
+}
+inline const PackedSlab& slab_at(const PackedSampler& packed, const PackedForest& forest,
+                                 const Incidence& in) {
+  return packed.viewer.parameters.empty() ? forest.slab_at(in) : forest.family_slab_at(in);
+}
+inline Domain domain_at(const PackedViewer& viewer, Domain domain, const Incidence& in) {
+  if (!viewer.parameters.empty()) domain.scale_x = in.scale_x, domain.scale_y = in.scale_y;
+  return domain;
+}
 
 // What is known of its viewers, and the slab of a partition that holds one.
 PackedViewer pack_viewer(const SamplerData& data);

@@ -35,7 +35,7 @@ Sampler<F> make_sampler(F f, const BuildOptions& options = {}, const Host& host 
 
 // Of what is no BRDF: one readable line instead of a page of constraints.
 template <class F, class... Options>
-requires(!Brdf<F>) void make_sampler(const F&, const Options&...) {
+requires(!Brdf<F> && !is_family_v<F>) void make_sampler(const F&, const Options&...) {
   static_assert(std::is_void_v<F>,
                 "a BRDF is called as f(wo, wi) and returns a number, Rgb, Spectrum or std::array");
 }

@@ -10,6 +10,7 @@
 
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
+#include "reflectree/sampler/known/parameter.hpp"
 #include "reflectree/sampler/known/partition.hpp"
 #include "reflectree/sampler/known/viewer_frame.hpp"
 #include "reflectree/sampler/square/domain.hpp"
@@ -61,6 +62,8 @@ struct SamplerData {
   Target target;
   ViewerFrame frame;
   Domain domain;
+  std::vector<KnownParameter> parameters;  // of families
+  ScaleLaw law;                            // of families: of the domain's widths
   Partition exact_partition;
   std::vector<MajorantTree> exact;  // one per slab
   Partition one_shot_partition;

@@ -41,17 +41,17 @@ REFLECTREE_INLINE void store_sample(const TrialBlock& b, const Values& values, s
 
 // Fills a block with the next directions from i on, each in a leaf chosen by alias table; no_sample(i) where
 // there is none.
-template <RandomBits U, class NoSample>
-REFLECTREE_INLINE void add_by_alias(const PackedSampler& packed, const Domain& domain,
+template <class F, RandomBits U, class NoSample>
+REFLECTREE_INLINE void add_by_alias(const F& f, const PackedSampler& packed, const Domain& domain,
                                     std::span<const Direction> wo, std::size_t& i, U& u, TrialBlock& block,
                                     const NoSample& no_sample) {
   for (; i < wo.size() && !block.full(); ++i) {
     Incidence in;
-    if (!find_incidence(packed.viewer, wo[i], in)) {
+    if (!find_incidence_of(f, packed, wo[i], in)) {
       no_sample(i);
       continue;
     }
-    const PackedSlab& slab = packed.one_shot.slab_at(in);
+    const PackedSlab& slab = slab_of<F>(packed.one_shot, in);
     const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
     block.add(i, in, choose_leaf(slab, leaves, bits64(u)), domain.half(), u);
   }
@@ -59,8 +59,8 @@ REFLECTREE_INLINE void add_by_alias(const PackedSampler& packed, const Domain& d
 
 inline constexpr std::size_t descents_side_by_side = 8;
 // The same by monotone descent from points of [0, 1]^2.
-template <class NoSample>
-REFLECTREE_INLINE void add_by_descent(const PackedSampler& packed, const Domain& domain,
+template <class F, class NoSample>
+REFLECTREE_INLINE void add_by_descent(const F& f, const PackedSampler& packed, const Domain& domain,
                                       std::span<const Direction> wo, std::span<const Vec2<double>> points,
                                       std::size_t& i, TrialBlock& block, const NoSample& no_sample) {
   using Field = TrialBlock::Field;
@@ -76,7 +76,7 @@ REFLECTREE_INLINE void add_by_descent(const PackedSampler& packed, const Domain&
     std::size_t n = 0;
     for (; i < wo.size() && n < descents_side_by_side; ++i) {
       Started& s = started[n];
-      if (!are_uniforms(points[i].x, points[i].y) || !find_incidence(packed.viewer, wo[i], s.in)) {
+      if (!are_uniforms(points[i].x, points[i].y) || !find_incidence_of(f, packed, wo[i], s.in)) {
         no_sample(i);
         continue;
       }
@@ -85,7 +85,7 @@ REFLECTREE_INLINE void add_by_descent(const PackedSampler& packed, const Domain&
       const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
       s.i = i;
       s.turn = below ? -0.f : 0.f;
-      descents[n++].start(packed.one_shot, packed.one_shot.slab_at(s.in), points[i].x, u2);
+      descents[n++].start(packed.one_shot, slab_of<F>(packed.one_shot, s.in), points[i].x, u2);
     }
     descend(descents, n);
     for (std::size_t j = 0; j < n; ++j) {
@@ -126,10 +126,11 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   const auto no_sample = [&](std::size_t i) { detail::store_no_sample(values.zero(), out[i]); };
-  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+  const Domain member = detail::domain_of_all(sampler.brdf(), packed);
+  with_known_kind(member, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
     for (std::size_t i = 0; i < wo.size();) {
       block.count = 0;
-      detail::add_by_alias(packed, domain, wo, i, u, block, no_sample);
+      detail::add_by_alias(sampler.brdf(), packed, domain, wo, i, u, block, no_sample);
       detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
     }
   });
@@ -144,10 +145,11 @@ void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> w
   detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   detail::BlockValues<F> values(sampler.brdf(), packed.target);
   const auto no_sample = [&](std::size_t i) { detail::store_no_sample(values.zero(), out[i]); };
-  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+  const Domain member = detail::domain_of_all(sampler.brdf(), packed);
+  with_known_kind(member, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
     for (std::size_t i = 0; i < wo.size();) {
       block.count = 0;
-      detail::add_by_descent(packed, domain, wo, points, i, block, no_sample);
+      detail::add_by_descent(sampler.brdf(), packed, domain, wo, points, i, block, no_sample);
       detail::finish_one_shot<detail::AcrossX::uniform>(domain, block, values, out);
     }
   });
@@ -170,53 +172,54 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
     int trials;
   };
   Pending pending[detail::block_size];
-  with_known_kind(packed.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < wo.size() || count > 0;) {
-      for (; i < wo.size() && count < detail::block_size; ++i) {
-        Pending& p = pending[count];
-        if (!find_incidence(packed.viewer, wo[i], p.in)) {
-          detail::store_no_sample(values.zero(), out[i]);
-          continue;
+  with_known_kind(
+      detail::domain_of_all(sampler.brdf(), packed), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < wo.size() || count > 0;) {
+          for (; i < wo.size() && count < detail::block_size; ++i) {
+            Pending& p = pending[count];
+            if (!detail::find_incidence_of(sampler.brdf(), packed, wo[i], p.in)) {
+              detail::store_no_sample(values.zero(), out[i]);
+              continue;
+            }
+            p.slab = &detail::slab_of<F>(packed.exact, p.in);
+            p.i = i;
+            p.trials = 0;
+            ++count;
+          }
+          b.count = 0;
+          for (std::size_t k = 0; k < count; ++k) {
+            const Pending& p = pending[k];
+            const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
+            b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
+            b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
+          }
+          detail::compute_points<detail::AcrossX::place>(domain, b, values);
+          // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
+          for (std::size_t k = 0; k < count; k += lane_count) {
+            const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
+            b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
+            b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
+            b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
+            b.set(Field::scale, k, a / t);
+          }
+          std::size_t rejected = 0;
+          for (std::size_t k = 0; k < count; ++k) {
+            const float target = b.at[Field::target][k];
+            const bool accepted = b.at[Field::uniform][k] < target;
+            stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
+            if (accepted) {
+              detail::store_sample(b, values, k, out[b.index[k]]);
+            } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
+              pending[rejected++] = pending[k];
+            } else {
+              stats.exhausted();
+              detail::store_no_sample(values.zero(), out[b.index[k]]);
+            }
+          }
+          count = rejected;
         }
-        p.slab = &packed.exact.slab_at(p.in);
-        p.i = i;
-        p.trials = 0;
-        ++count;
-      }
-      b.count = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        const Pending& p = pending[k];
-        const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
-        b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
-        b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
-      }
-      detail::compute_points<detail::AcrossX::place>(domain, b, values);
-      // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
-      for (std::size_t k = 0; k < count; k += lane_count) {
-        const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
-        b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
-        b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
-        b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
-        b.set(Field::scale, k, a / t);
-      }
-      std::size_t rejected = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        const float target = b.at[Field::target][k];
-        const bool accepted = b.at[Field::uniform][k] < target;
-        stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
-        if (accepted) {
-          detail::store_sample(b, values, k, out[b.index[k]]);
-        } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
-          pending[rejected++] = pending[k];
-        } else {
-          stats.exhausted();
-          detail::store_no_sample(values.zero(), out[b.index[k]]);
-        }
-      }
-      count = rejected;
-    }
-  });
+      });
 }
 
 }  // namespace reflectree

@@ -239,11 +239,11 @@ void sample_rounds(const OneShotSampler<AnyBrdf>& sampler, std::span<const Direc
     round.clear();
     if (points.empty()) {
       for (detail::TrialBlock* b; i < wo.size() && (b = round.room_for(1));)
-        detail::add_by_alias(packed, domain, wo, i, u, *b, no_sample);
+        detail::add_by_alias(sampler.brdf(), packed, domain, wo, i, u, *b, no_sample);
       round.compute<detail::AcrossX::place>();
     } else {
       for (detail::TrialBlock* b; i < wo.size() && (b = round.room_for(detail::descents_side_by_side));)
-        detail::add_by_descent(packed, domain, wo, points, i, *b, no_sample);
+        detail::add_by_descent(sampler.brdf(), packed, domain, wo, points, i, *b, no_sample);
       round.compute<detail::AcrossX::uniform>();
     }
     round.store_one_shot(out, place_of);

@@ -13,9 +13,9 @@
 
 namespace reflectree {
 
-// Coordinates in [0, 1]: elevation of wo, the place of wi in whatever map the sampler uses, and, where the
-// function is anisotropic, the azimuth of wo.
-using AttackPoint = std::array<double, 4>;
+// Coordinates in [0, 1]: elevation of wo, the place of wi in whatever map the sampler uses; where the
+// function is anisotropic, the azimuth of wo; and of families the parameters.
+using AttackPoint = std::array<double, 6>;
 // ratio[i] = T / (a M) at points[i]: above 1 the bound is exceeded.
 using RatioFunction = std::function<void(std::span<const AttackPoint> points, std::span<double> ratio)>;
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/verify/way_in.hpp"
 
@@ -27,6 +27,9 @@ struct Suspect {
   std::function<std::optional<Direction>(Direction wo, Pcg32& u)> propose;
   // One trial of exact mode with its unbiased weight, channel by channel; zeros for none.
   std::function<void(Direction wo, Pcg32& u, std::span<float> weights)> once;
+  // Of a family: f is its member there.
+  std::optional<AnyFamily> family = {};
+  Parameters at = {};
   const PackedSampler* packed = nullptr;
   const SamplerData* data = nullptr;  // the canonical form, where it is at hand
 

@@ -23,5 +23,9 @@ CheckResult check_giving_up(const WayIn& way, std::uint64_t promised = 256);
 // T / (a M) of the function to its bound anywhere, by point location in the canonical trees: what an attack
 // maximises. Keeps a reference to the data.
 RatioFunction bound_ratio(AnyBrdf f, const SamplerData& data);
+// Of all members of a family: parameters are coordinates, too.
+RatioFunction bound_ratio(AnyFamily family, const SamplerData& data);
+// How many coordinates a point has that attacks the bounds of a sampler.
+int attack_coordinates(const SamplerData& data);
 
 }  // namespace reflectree

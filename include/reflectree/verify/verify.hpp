@@ -11,6 +11,7 @@
 // family of all statistical tests errs once in 1 / family_significance sound runs.
 #pragma once
 
+#include "reflectree/sampler/family_sampler.hpp"
 #include "reflectree/verify/verify_suspect.hpp"
 #include "reflectree/verify/ways.hpp"
 
@@ -33,6 +34,20 @@ VerifyReport verify(const F& f, const VerifyOptions& options = {}, const BuildOp
   const SamplerData data = build(AnyBrdf(f), build_options, host);
   const auto sampler = make_sampler(f, data);
   return verify(sampler, &data, options, host);
+}
+
+// Of a family: members one after the other, the effort shared among them.
+template <FamilyFunction F>
+VerifyReport verify(const FamilySampler<F>& sampler, const SamplerData* data = nullptr,
+                    const VerifyOptions& options = {}, const Host& host = {}) {
+  const AnyFamily any(sampler.exact.family());
+  const auto judge = [&](const Parameters& at, const VerifyOptions& each, const Host& part) {
+    const Sampler<FamilyMember<F>> member = sampler.at(at);
+    Suspect one = suspect(member, any.member(at), data);
+    one.family = any, one.at = at;
+    return verify(one, each, part);
+  };
+  return verify_members(any.ranges(), judge, options, host);
 }
 
 }  // namespace reflectree

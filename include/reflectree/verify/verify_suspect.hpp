@@ -33,10 +33,20 @@ struct VerifyOptions {
   std::uint64_t samples = 400'000;    // for each of them, by the first way of each mode; half by any other
   std::uint64_t trials = 10'000'000;  // in search of overshoots
   int albedo_directions = 80;         // compared with cubature: nodes, middles, anywhere
+  int members = 3;                    // of a family: anywhere in its ranges, besides both ends
   // Called as results come.
   std::function<void(const CheckResult&)> on_check = [](const CheckResult&) {};
   std::function<void(const VerifyFigure&)> on_figure = [](const VerifyFigure&) {};
 };
+
+// Members of a family: both ends of its ranges, and so many anywhere.
+std::vector<Parameters> members_to_verify(const std::vector<ParameterRange>& ranges, int anywhere,
+                                          std::uint64_t seed);
+// judge(member, options, host) of each of them; the effort is shared.
+VerifyReport verify_members(
+    const std::vector<ParameterRange>& ranges,
+    const std::function<VerifyReport(const Parameters&, const VerifyOptions&, const Host&)>& judge,
+    const VerifyOptions& options = {}, const Host& host = {});
 
 // The judges. Ways and densities may be wrapped beforehand, to see a fault caught.
 VerifyReport verify(const Suspect& suspect, const VerifyOptions& options = {}, const Host& host = {});

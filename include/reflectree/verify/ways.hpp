@@ -204,8 +204,9 @@ template <Brdf F>
 Suspect suspect(const Sampler<F>& sampler, AnyBrdf f, const SamplerData* data = nullptr) {
   const std::size_t channels = std::size_t(f.channels());
   const PackedSampler& packed = sampler.exact.packed();
-  Suspect s{std::move(f), packed.target, ways_into(sampler.exact, channels), {}, {}, {}, {}, {}, {}, {},
-            &packed,      data};
+  Suspect s{
+      std::move(f), packed.target, ways_into(sampler.exact, channels), {}, {}, {}, {}, {}, {}, {}, {}, {},
+      &packed,      data};
   for (WayIn& way : ways_into(sampler.one_shot, channels)) s.ways.push_back(std::move(way));
   s.exact_pdf = [&sampler](Direction wo, Direction wi) { return sampler.exact.pdf(wo, wi); };
   s.one_shot_pdf = [&sampler](Direction wo, Direction wi) { return sampler.one_shot.pdf(wo, wi); };

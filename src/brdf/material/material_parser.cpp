@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recursive descent over the grammar in material.hpp; every error names its column.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -101,7 +102,7 @@ class Parser {
     }
     if (const ModelInfo* model = find_model(name); model && (rest_.empty() || rest_.front() != '#')) {
       result.model = model->name;
-      parameters(*model, result.values);
+      parameters(*model, result);
       if (const char* fault = model->fault(result.values)) {
         fail_at(start, "parameters of " + result.model + " do not fit together", fault);
       }
@@ -146,7 +147,8 @@ class Parser {
     if (result.member.empty()) fail("missing member after '#'", "write PATH#MEMBER");
   }
 
-  void parameters(const ModelInfo& model, std::vector<Rgb>& values) {
+  void parameters(const ModelInfo& model, MaterialTerm& term) {
+    std::vector<Rgb>& values = term.values;
     for (const ParameterInfo& p : model.parameters) values.push_back(p.initial);
     std::vector<bool> given(values.size());
     if (!take(':')) return;
@@ -161,9 +163,37 @@ class Parser {
         if (given[i]) fail_at(start, "parameter " + excerpt(name) + " is given twice", "give it once");
         given[i] = true;
       }
+      const std::size_t number_at = position();
       const Rgb read = value(model.parameters[first], name);
       for (std::size_t i = first; i < first + count; ++i) values[i] = read;
+      if (take_dots())
+        term.varied.push_back(range(model.parameters[first], name, first, count, read, number_at));
     } while (take(','));
+  }
+
+  bool take_dots() {
+    skip_blanks();
+    if (!rest_.starts_with("..")) return false;
+    rest_.remove_prefix(2);
+    skip_blanks();
+    return true;
+  }
+  // The rest of name=FROM..TO.
+  VariedRange range(const ParameterInfo& p, std::string_view name, std::size_t first, std::size_t count,
+                    Rgb from, std::size_t start) {
+    const std::string word(name);
+    if (p.channels != 1) fail_at(start, word + " is a colour: no range of it can vary", "give it one value");
+    const Rgb to = value(p, name);
+    if (!(from.r < to.r)) {
+      fail_at(start,
+              "the range of " + word + " is from " + shortest_text(from.r) + " to " + shortest_text(to.r),
+              "give the smaller number first, or one number alone");
+    }
+    if (++ranges_ > max_parameters) fail_at(start, "has more than two ranges", "give the others one number");
+    if (std::find(names_.begin(), names_.end(), word) != names_.end())
+      fail_at(start, "two ranges are both named " + word, "give one of them one number");
+    names_.push_back(word);
+    return {first, count, from.r, to.r};
   }
 
   // The parameters that `name` sets: one, or the two of a pair, or none.
@@ -206,13 +236,18 @@ class Parser {
   }
   float number() {
     skip_blanks();
-    const std::optional<float> result = take_number(rest_);
+    std::string_view before_range = rest_.substr(0, rest_.find(".."));  // 1..2, not 1. and .2
+    const std::size_t there = before_range.size();
+    const std::optional<float> result = take_number(before_range);
+    if (result) rest_.remove_prefix(there - before_range.size());
     if (!result) fail("expected a number, found " + found(), "write it like 0.5 or 1e-3");
     return *result + 0.f;  // -0 becomes 0
   }
 
   std::string_view text_, rest_;
   const FileExists& exists_;
+  std::size_t ranges_ = 0;
+  std::vector<std::string> names_;  // of the ranges
 };
 
 // The whole text as PATH or PATH#member of an existing file.

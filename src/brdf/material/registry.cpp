@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reflectree/brdf/material/baked_tables.hpp"
+#include "reflectree/brdf/material/model_family.hpp"
 #include "reflectree/brdf/models/all.hpp"
 #include "reflectree/text/edit_distance.hpp"
 
@@ -14,7 +15,7 @@ template <class M>
 ModelInfo entry() {
   const auto description = M::describe();
   ModelInfo info{
-      description.name, description.model_class, description.summary, description.source, {}, {}, {}};
+      description.name, description.model_class, description.summary, description.source, {}, {}, {}, {}};
   for (const auto& p : description.parameters) {
     info.parameters.push_back(
         {p.name, p.is_rgb() ? 3 : 1, p.lo, p.hi, p.get(M{}), p.unit, p.meaning, p.is_quiet()});
@@ -24,6 +25,16 @@ ModelInfo entry() {
     return nullptr;
   };
   info.make = [](std::span<const Rgb> values) -> AnyBrdf { return model_from_values<M>(values); };
+  info.make_family = [](std::span<const Rgb> values, std::span<const VariedValues> varied,
+                        const std::vector<ParameterRange>& ranges, const std::string& name) -> AnyFamily {
+    ModelFamily<M> family{model_from_values<M>(values), {}};
+    const auto parameters = M::describe().parameters;
+    for (const VariedValues& v : varied) {
+      const auto first = parameters.begin() + std::ptrdiff_t(v.first);
+      family.varied.push_back({{first, first + std::ptrdiff_t(v.count)}, v.parameter});
+    }
+    return Family<ModelFamily<M>>{std::move(family), ranges, name};
+  };
   return info;
 }
 
@@ -31,9 +42,13 @@ ModelInfo entry() {
 template <std::size_t index>
 ModelInfo baked_entry() {
   const BakedTable& table = baked_tables()[index];
-  ModelInfo info{table.name, ModelClass::approximate, table.summary, "computed", {}, {}, {}};
+  ModelInfo info{table.name, ModelClass::approximate, table.summary, "computed", {}, {}, {}, {}};
   info.fault = [](std::span<const Rgb>) -> const char* { return nullptr; };
   info.make = [](std::span<const Rgb>) -> AnyBrdf { return bake_table(baked_tables()[index].name); };
+  info.make_family = [](std::span<const Rgb>, std::span<const VariedValues>,
+                        const std::vector<ParameterRange>&, const std::string& name) -> AnyFamily {
+    throw Error("a table has no parameters", name, "give ranges to a model");
+  };
   return info;
 }
 

@@ -141,15 +141,15 @@ void HalfAngleTable::eval(std::span<const ShadingGeometry<float>> geometry, std:
     const std::size_t end = std::min(begin + block, geometry.size());
     Corners corner[block];
     const float* nearest[block];
+    bool above[block];
     for (std::size_t i = begin; i < end; ++i) {
       const ShadingGeometry<float>& g = geometry[i];
       const std::size_t k = i - begin;
-      nearest[k] = nullptr;
-      if (!(g.cos_theta_o > 0 && g.cos_theta_i > 0)) continue;
+      above[k] = g.cos_theta_o > 0 && g.cos_theta_i > 0;
+      if (!above[k]) continue;
       const Position at = position(*this, g);
-      nearest[k] = nearest_cell(*this, at);
       if (lookup == TableLookup::nearest) {
-        prefetch(nearest[k]);
+        prefetch(nearest[k] = nearest_cell(*this, at));
         continue;
       }
       const Corners& c = corner[k] = corners(*this, at);
@@ -159,7 +159,7 @@ void HalfAngleTable::eval(std::span<const ShadingGeometry<float>> geometry, std:
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t k = i - begin;
       Rgb value;
-      if (nearest[k])
+      if (above[k])
         value = lookup == TableLookup::nearest ? value_of(nearest[k]) : value_of(*this, corner[k]);
       out[3 * i] = value.r, out[3 * i + 1] = value.g, out[3 * i + 2] = value.b;
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cosine_lobe.hpp"
+#include "adjoint.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 
 namespace reflectree::render {
@@ -113,20 +113,10 @@ struct Sampled final : Scattering {
       if (!drawn) return std::nullopt;
       return Scattered{drawn->wi, drawn->pdf, to_rgb(drawn->weight)};
     }
-    const float cosine = sampler.has_pdf() ? .1f : 1;
-    Direction wo;
-    if (to_unit_float(u()) < cosine) {
-      wo = cosine_direction(u);
-    } else {
-      UniformBits bits = u.lend();
-      const auto drawn = sampler.sample(wi, bits);
-      u.take_back(bits);
-      if (!drawn) return std::nullopt;
-      wo = drawn->wi;
-    }
-    const float density = cosine * cosine_pdf(wo) + (1 - cosine) * pdf(wi, wo, place);
-    if (!(density > 0)) return std::nullopt;
-    return Scattered{wo, density, (wo.z / density) * to_rgb(eval(f, wo, wi))};
+    return draw_adjoint(
+        sampler.has_pdf() ? .1f : 1, u, [&](UniformBits& bits) { return sampler.sample(wi, bits); },
+        [&](Direction wo) { return pdf(wi, wo, place); },
+        [&](Direction wo) { return to_rgb(eval(f, wo, wi)); });
   }
   bool has_pdf() const override { return sampler.has_pdf(); }
 };

@@ -9,6 +9,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/peers/registry.hpp"
+#include "reflectree/render/materials/scattering_family.hpp"
 
 namespace reflectree::render {
 
@@ -119,12 +120,35 @@ ScatteringPtr MaterialReader::with_sampler(const AnyBrdf& f, const std::string& 
 }
 
 ScatteringPtr MaterialReader::from_text(Node n) {
-  xml_.only(n, {"material"});
   const std::string text = xml_.word(n, "material", "");
+  const Material material = xml_.placed(n, [&] { return parse_material(text); });
+  if (is_family(material)) return from_family(n, material);
+  xml_.only(n, {"material"});
   const auto load = [this](const std::string& p, const std::string& m) {
     return load_brdf(xml_.beside(p), m);
   };
-  return with_sampler(xml_.placed(n, [&] { return make_brdf(parse_material(text), load); }), text);
+  return with_sampler(xml_.placed(n, [&] { return make_brdf(material, load); }), text);
+}
+
+// A material with ranges: a number or a texture for each of them, by its name.
+ScatteringPtr MaterialReader::from_family(Node n, const Material& material) {
+  const AnyFamily family = xml_.placed(n, [&] { return make_family(material); });
+  std::vector<Texture> at;
+  for (const ParameterRange& range : family.ranges()) {
+    if (!XmlReader::named(n, range.name.c_str()))
+      xml_.fail(n, range.name + " has a range, and no value", "add a texture or a number of that name");
+    at.push_back(number(n, range.name.c_str(), 0));
+  }
+  xml_.only(n, {"material", family.ranges().front().name, family.ranges().back().name});
+  const std::string& sampler = xml_.options().sampler;
+  if (sampler != "exact" && sampler != "one-shot")
+    xml_.fail(n, "'" + sampler + "' has no sampler of a family", "render with --sampler exact or one-shot");
+  if (!xml_.sound()) return diffuse({});
+  return xml_.placed(n, [&] {
+    return sampled_family(
+        make_sampler(Family<AnyFamily>{family, family.ranges(), family.traits().name}, {}, host_),
+        sampler == "exact", std::move(at));
+  });
 }
 
 ScatteringPtr MaterialReader::from_file(Node n) {

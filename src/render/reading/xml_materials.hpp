@@ -2,6 +2,7 @@
 // <bsdf> and <texture>.
 #pragma once
 
+#include "reflectree/brdf/material/material.hpp"
 #include "xml_reader.hpp"
 
 namespace reflectree::render {
@@ -26,6 +27,7 @@ class MaterialReader {
   ScatteringPtr make(Node n, int depth);
   ScatteringPtr from_file(Node n);
   ScatteringPtr from_text(Node n);
+  ScatteringPtr from_family(Node n, const Material& material);
   ScatteringPtr with_sampler(const AnyBrdf& f, const std::string& text);
   // Its bsdfs; a reference of the name `texture` may lead to a texture.
   std::vector<ScatteringPtr> inside(Node n, int depth, std::string_view texture = "");

@@ -8,6 +8,7 @@
 #include "albedo_azimuth.hpp"
 #include "albedo_integrals.hpp"
 #include "albedo_panels.hpp"
+#include "albedo_parameters.hpp"
 #include "albedo_witnesses.hpp"
 #include "knots.hpp"
 #include "reflectree/math/genz_malik.hpp"
@@ -22,20 +23,21 @@ namespace {
 // with.
 class TableBuilder {
  public:
-  TableBuilder(const Field& field, float phi_o, float relative_error, const Jumps& jumps, const Host& host,
-               Effort& effort, std::uint64_t budget)
+  TableBuilder(const Field& field, float phi_o, const Coordinates& at, float relative_error,
+               const Jumps& jumps, const Host& host, Effort& effort, std::uint64_t budget)
       : field_(field),
         phi_o_(phi_o),
+        at_(at),
         host_(host),
         effort_(effort),
         error_(double(relative_error)),
         known_(field.f.traits().theta_o_factor),
-        told_(field.f.traits().albedo),
+        told_(field.family ? nullptr : field.f.traits().albedo),
         start_(effort.evaluations),
         budget_(budget),
         max_regions_(std::size_t(clamp(double(budget) / (15 * double(genz_malik_points)), 400., 40000.))),
         apart_{0, effort.limit},
-        rim_(!field.frame.isotropic()) {
+        rim_(!field.frame.isotropic() || field.family) {
     if (!field.frame.isotropic()) cells_x_ = 12, cells_y_ = 6;
     std::vector<double> borders = first_borders(field.f.traits());
     for (const ThetaJump& jump : jumps.theta_o) borders.push_back(jump.before), borders.push_back(jump.after);
@@ -147,9 +149,9 @@ class TableBuilder {
   // The nodes hold the albedo without the factor that the function knows of.
   double factor(double theta_o) const { return known_ ? known_(theta_o) : 1.; }
 
-  std::vector<Direction> viewers_at(const std::vector<float>& cosines) const {
-    std::vector<Direction> viewers;
-    for (const float c : cosines) viewers.push_back(turned_to(wo_from_cosine(c), phi_o_));
+  std::vector<Viewer> viewers_at(const std::vector<float>& cosines) const {
+    std::vector<Viewer> viewers;
+    for (const float c : cosines) viewers.push_back({turned_to(wo_from_cosine(c), phi_o_), at_});
     return viewers;
   }
   std::array<double, 5> values_of(const Panel& panel) const {
@@ -207,8 +209,8 @@ class TableBuilder {
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
     Integrals a;
     if (told_) {
-      for (const Direction wo : viewers_at(cosines))
-        a.values.push_back(double(field_.target.scale) * told_(field_.to_caller(wo)));
+      for (const Viewer& viewer : viewers_at(cosines))
+        a.values.push_back(double(field_.target.scale) * told_(field_.to_caller(viewer.wo)));
     } else {
       a = integrate(field_, viewers_at(cosines),
                     {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, max_regions_}, host_,
@@ -243,6 +245,7 @@ class TableBuilder {
 
   const Field& field_;
   const float phi_o_;
+  const Coordinates at_;
   const Host& host_;
   Effort& effort_;
   double error_;
@@ -260,14 +263,84 @@ class TableBuilder {
   std::map<double, double> nodes_;
 };
 
-// The table at one azimuth of the viewer.
-AlbedoTable build_row(const Field& field, float phi_o, float relative_error, const Jumps& jumps,
-                      std::uint64_t seed, const Host& host, Effort& effort, std::uint64_t budget,
-                      bool checked) {
-  TableBuilder builder(field, phi_o, relative_error, jumps, host, effort, budget);
+// The table at one azimuth of the viewer, of one member.
+AlbedoTable build_row(const Field& field, float phi_o, const Coordinates& at, float relative_error,
+                      const Jumps& jumps, std::uint64_t seed, const Host& host, Effort& effort,
+                      std::uint64_t budget, bool checked) {
+  TableBuilder builder(field, phi_o, at, relative_error, jumps, host, effort, budget);
   builder.refine();
   if (checked) builder.check(seed);
   return builder.table();
+}
+
+// The largest miss of a family's table at viewers and members anywhere, relatively, by cubature from other
+// cells than those that it was made of.
+double largest_miss(const Field& field, const AlbedoTable& table, float relative_error, std::uint64_t seed,
+                    const Host& host) {
+  constexpr int places = 48, viewers = 3;
+  constexpr float progress = 0.4f;
+  Pcg32 u(seed, 29);
+  const KnownBox whole = field.whole();
+  double worst = 0;
+  Effort uncounted;
+  for (int k = 0; k < places; ++k) {
+    Shares share{};
+    for (int axis = 1; axis < whole.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
+    const Known known = whole.at(share);
+    const Coordinates at{known[2], known[3]};
+    std::vector<Viewer> witnesses;
+    // Elevations up to 89.9 degrees; a third of them near the horizon.
+    for (int i = 0; i < viewers; ++i) {
+      const float c = i == 0 ? 1.8e-3f + 0.2f * sqr(to_unit_float(u())) : max(to_unit_float(u()), 1.8e-3f);
+      witnesses.push_back({turned_to(wo_from_cosine(c), known[1]), at});
+    }
+    const Integrals seen = integrate(
+        field, witnesses, {0.25 * double(relative_error), 11, 7, true, progress, progress}, host, uncounted);
+    for (std::size_t i = 0; i < witnesses.size(); ++i) {
+      const double a = double(albedo_at(table, witnesses[i].wo.z, known[1], at)), b = seen.values[i];
+      if (max(a, b) > 0) worst = max(worst, std::abs(a - b) / max(a, b));
+    }
+  }
+  return worst;
+}
+
+// The albedo of a family: of single members, then over the parameters, the first inside of the second.
+AlbedoTable build_family_albedo(const Field& field, float relative_error, const Jumps& jumps,
+                                std::uint64_t seed, const Host& host, Effort& effort) {
+  const std::uint64_t budget = effort.limit / 3, start = effort.evaluations;
+  const std::vector<float> borders = azimuth_borders(field, &jumps, 0, theta_max);
+  const std::uint64_t each = budget / std::max<std::uint64_t>(8, 5 * (borders.size() - 1));
+  const auto spent = [&] { return effort.evaluations - start > budget; };
+  // Of one member, over theta_o and, of anisotropic ones, phi_o. What rows miss, the whole is asked.
+  const auto member_at = [&](const Coordinates& at, float error, bool with_checks) {
+    if (field.frame.isotropic())
+      return build_row(field, 0, at, 0.35f * error, jumps, seed, host, effort, budget / 8, with_checks);
+    const auto row_at = [&](float phi_o, bool checked) {
+      return build_row(field, phi_o, at, 0.35f * error, jumps, seed, host, effort, each,
+                       checked && with_checks);
+    };
+    const auto not_asked = [](const AlbedoTable&) { return 0.; };
+    return albedo_over_azimuth(field.frame.symmetry, borders, error, row_at, not_asked, spent);
+  };
+  const std::vector<KnownParameter>& parameters = field.parameters;
+  const auto over_first = [&](float second, float error, bool with_checks) {
+    const float inner = field.frame.isotropic() ? error : 0.5f * error;
+    const auto slice_at = [&](float first, bool checked) {
+      return member_at({first, second}, inner, checked && with_checks);
+    };
+    return albedo_over_parameter(parameters[0], error, slice_at, spent);
+  };
+  const auto over_second = [&](float second, bool checked) {
+    return over_first(second, 0.5f * relative_error, checked);
+  };
+  // Four known coordinates: at 1e-4 tables of millions of nodes, and all of the effort. What is kept is stated.
+  if (parameters.size() == 2 && !field.frame.isotropic()) relative_error = max(relative_error, 2e-3f);
+  AlbedoTable table = parameters.size() == 1
+                          ? over_first(0, relative_error, true)
+                          : albedo_over_parameter(parameters[1], relative_error, over_second, spent);
+  const double miss = largest_miss(field, table, relative_error, seed, host);
+  if (miss > double(table.relative_error)) table.relative_error = float(min(2 * miss, 1.));
+  return table;
 }
 
 }  // namespace
@@ -275,8 +348,9 @@ AlbedoTable build_row(const Field& field, float phi_o, float relative_error, con
 AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& jumps, std::uint64_t seed,
                          const Host& host, Effort& effort) {
   const std::uint64_t budget = effort.limit / 3;
+  if (field.family) return build_family_albedo(field, relative_error, jumps, seed, host, effort);
   if (field.frame.isotropic()) {
-    AlbedoTable table = build_row(field, 0, relative_error, jumps, seed, host, effort, budget, true);
+    AlbedoTable table = build_row(field, 0, {}, relative_error, jumps, seed, host, effort, budget, true);
     if (field.f.traits().albedo)
       AlbedoWitnesses(field, double(relative_error), seed, host, effort.limit).miss_of(table);
     return table;
@@ -289,7 +363,7 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& 
   float reachable = 0;
   const auto row_at = [&](float phi_o, bool checked) {
     AlbedoTable row =
-        build_row(field, phi_o, max(asked, reachable), jumps, seed, host, effort, each, checked);
+        build_row(field, phi_o, {}, max(asked, reachable), jumps, seed, host, effort, each, checked);
     if (reachable == 0) reachable = row.relative_error;
     return row;
   };

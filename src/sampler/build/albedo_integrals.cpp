@@ -28,7 +28,7 @@ void apply_rule(Region& r, const FieldValue* v, double area) {
 
 // One integral, advanced in rounds: the regions that carry most of the error are halved.
 struct Integral {
-  Direction wo;
+  Viewer viewer;
   std::vector<Region> regions;
   std::size_t fresh = 0;  // regions from here on await their values
   double value = 0, error = 0;
@@ -74,7 +74,7 @@ void start(Integral& integral, const Field& field, const IntegralOptions& option
     }
   };
   double pole = 1. / 2048;
-  for (const Landmark& at : field.landmarks(integral.wo)) {
+  for (const Landmark& at : field.landmarks(integral.viewer)) {
     if (at.p.y != 0) close_in(at.p, double(at.size.x), double(at.size.y));
     if (abs(at.p.y) < at.size.y) pole = std::min(pole, double(at.size.y));
   }
@@ -85,7 +85,7 @@ void start(Integral& integral, const Field& field, const IntegralOptions& option
     }
   } else {
     close_in_on_line(0, pole);
-    const double narrow = max(0.25 * double(integral.wo.z), 1e-5);
+    const double narrow = max(0.25 * double(integral.viewer.wo.z), 1e-5);
     close_in_on_line(1, narrow);
     if (!domain.half()) close_in_on_line(-1, narrow);
   }
@@ -140,13 +140,13 @@ void advance(Integral& integral, double relative_error, std::size_t max_regions)
 
 }  // namespace
 
-Integrals integrate(const Field& field, const std::vector<Direction>& viewers, const IntegralOptions& options,
+Integrals integrate(const Field& field, const std::vector<Viewer>& viewers, const IntegralOptions& options,
                     const Host& host, Effort& effort) {
   if (viewers.empty()) return {};
   const double area = double(root_area(field.domain.symmetry));
   std::vector<Integral> integrals(viewers.size());
   for (std::size_t i = 0; i < viewers.size(); ++i) {
-    integrals[i].wo = viewers[i];
+    integrals[i].viewer = viewers[i];
     start(integrals[i], field, options);
   }
   std::vector<FieldPoint> points;
@@ -161,9 +161,8 @@ Integrals integrate(const Field& field, const std::vector<Direction>& viewers, c
       for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r) {
         const Region& region = integral.regions[r];
         for (const Vec2<float>& q : genz_malik_nodes<float>()) {
-          points.push_back(
-              {integral.wo,
-               {float(region.x + region.hx * double(q.x)), float(region.y + region.hy * double(q.y))}});
+          points.push_back(field_point(integral.viewer, {float(region.x + region.hx * double(q.x)),
+                                                         float(region.y + region.hy * double(q.y))}));
         }
       }
     }

@@ -26,7 +26,7 @@ struct Integrals {
 
 // Integrates T over the square for every viewer, in their frame; all integrals advance together, a batch per
 // round.
-Integrals integrate(const Field& field, const std::vector<Direction>& viewers, const IntegralOptions& options,
+Integrals integrate(const Field& field, const std::vector<Viewer>& viewers, const IntegralOptions& options,
                     const Host& host, Effort& effort);
 
 }  // namespace reflectree::detail

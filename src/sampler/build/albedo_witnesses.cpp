@@ -21,7 +21,7 @@ std::vector<float> restless_azimuths(const Field& field, const Host& host, Pcg32
   std::vector<FieldPoint> fixed;
   for (std::size_t k = 0; k < points; ++k) {
     const float theta = theta_max * to_unit_float(u()), x = to_unit_float(u());
-    fixed.push_back({viewer_at({theta, 0}), square_point(field.domain.symmetry, x, to_unit_float(u()))});
+    fixed.push_back({viewer_at({theta, 0}).wo, square_point(field.domain.symmetry, x, to_unit_float(u()))});
   }
   std::vector<FieldPoint> all;
   for (std::size_t i = 0; i <= places; ++i) {
@@ -77,7 +77,7 @@ double AlbedoWitnesses::miss_of(const AlbedoTable& table) const {
   const bool told = bool(field_.f.traits().albedo);
   double worst = 0;
   for (std::size_t i = 0; i < viewers_.size(); ++i) {
-    const Direction wo = viewers_[i];
+    const Direction wo = viewers_[i].wo;
     const double a =
         double(field_.frame.isotropic() ? albedo_at(table, wo.z) : albedo_at(table, wo.z, azimuth_of(wo)));
     const double b = integrals_.values[i], larger = max(a, b);

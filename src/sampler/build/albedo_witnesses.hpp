@@ -20,7 +20,7 @@ class AlbedoWitnesses {
 
  private:
   const Field& field_;
-  std::vector<Direction> viewers_;
+  std::vector<Viewer> viewers_;
   Integrals integrals_;
 };
 

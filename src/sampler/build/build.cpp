@@ -9,14 +9,13 @@
 #include "albedo_integrals.hpp"
 #include "canonical.hpp"
 #include "check_options.hpp"
-#include "examine.hpp"
-#include "field.hpp"
 #include "findings.hpp"
 #include "jumps.hpp"
 #include "passes.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/identity.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
+#include "subject.hpp"
 #include "tighten.hpp"
 
 namespace reflectree {
@@ -38,7 +37,8 @@ std::vector<FieldPoint> highest_places(const std::vector<Slab>& slabs) {
     for (const Node& node : order[k]->nodes) {
       if (node.split == TreeSplit::leaf && (!highest || node.leaf.seen > highest->seen)) highest = &node.leaf;
     }
-    if (highest && highest->seen > 0) places.push_back({viewer_at(highest->seen_by), highest->seen_at});
+    if (highest && highest->seen > 0)
+      places.push_back(field_point(viewer_at(highest->seen_by), highest->seen_at));
   }
   return places;
 }
@@ -67,7 +67,9 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   host.progress(0.87f);
   host.stage("cross-examining");
   const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
-  const FieldPoint brightest{seen.brightest_wo, field.place_of(seen.brightest_wo, seen.brightest_wi)};
+  const Viewer brightest_viewer{seen.brightest_wo, seen.brightest_at};
+  const FieldPoint brightest =
+      field_point(brightest_viewer, field.place_of(brightest_viewer, seen.brightest_wi));
   // Slivers of steps, where no local search leads: what was met is mended, and all is asked again.
   constexpr std::uint64_t rounds = 24;
   for (std::uint64_t round = 0;; ++round) {
@@ -75,7 +77,7 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
     std::vector<FieldPoint> met;
     bool told = true;
     for (const Surprise& s : attempt.seen.surprises)
-      met.push_back({s.wo, s.p}), told = told && std::isfinite(s.ratio);
+      met.push_back(field_point(s.viewer, s.p)), told = told && std::isfinite(s.ratio);
     if (field.frame.isotropic() || met.empty() || !told || round + 1 == rounds) break;
     raise_at(attempt.exact, met, apart);
   }
@@ -102,11 +104,14 @@ void refuse_unfit_domain(const AlbedoTable& albedo, const Field& fit, const Host
   constexpr double allowed = 0.02;
   const std::vector<float> cosines{0.95f, 0.6f, 0.2f};
   Effort uncounted;
-  std::vector<Direction> viewers;
-  for (const float c : cosines) viewers.push_back(wo_from_cosine(c));
+  Coordinates middle{};
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    middle[i] = linear_mix(0.5f, lowest(fit.parameters[i]), highest(fit.parameters[i]));
+  std::vector<Viewer> viewers;
+  for (const float c : cosines) viewers.push_back({wo_from_cosine(c), middle});
   const Integrals own = integrate(fit, viewers, {1e-3, 8, 4, true, 0.86f, 0.86f}, host, uncounted);
   for (std::size_t i = 0; i < cosines.size(); ++i) {
-    const double a = double(albedo_at(albedo, cosines[i], 0)), b = own.values[i];
+    const double a = double(albedo_of(fit, albedo, viewers[i])), b = own.values[i];
     if (std::abs(a - b) <= (allowed + double(albedo.relative_error) + own.error) * std::max(a, b)) continue;
     char what[128];
     std::snprintf(what, sizeof what, "the domain that was asked for sees an albedo of %.4g, %s sees %.4g", a,
@@ -124,16 +129,16 @@ void check_domain(const Domain& domain, const ViewerFrame& frame, const std::str
   }
 }
 
-}  // namespace
-
-SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host& the_host) {
+SamplerData build_of(const Subject& subject, const BuildOptions& the_options, const Host& the_host) {
+  const AnyBrdf& f = subject.f;
+  const BrdfTraits& traits = subject.family ? subject.family->traits() : f.traits();
   check_options(the_options, f.channels());
   const Host host = completed(the_host);
   BuildOptions options = the_options;
   SamplerData data;
-  data.material = f.traits().name;
+  data.material = traits.name;
   host.stage("examining the function");
-  Examination seen = examine(f, options);
+  Examination seen = examine(subject, options);
   options.target = data.target = seen.target;
   data.report.asymmetry = seen.asymmetry;
 
@@ -145,24 +150,24 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     // A quarter is left for one-shot trees.
     Effort effort{0, options.max_evaluations / 4 * 3};
     host.stage("choosing the domain");
-    if (options.domain) check_domain(*options.domain, seen.frame, f.traits().name);
-    Domain domain = options.domain ? *options.domain : choose_domain(f, options, seen, ridges, host);
-    if (!seen.frame.isotropic()) domain.symmetry = Symmetry::none;
-    const Field field{f, options.target, domain, domain.half() && !seen.mirror_symmetric, ridges, seen.frame};
+    if (options.domain) check_domain(*options.domain, seen.frame, traits.name);
+    DomainChoice choice =
+        options.domain ? DomainChoice{*options.domain} : choose_domain(subject, options, seen, ridges, host);
+    if (!seen.frame.isotropic()) choice.domain.symmetry = Symmetry::none;
+    const Field field = field_of(subject, seen, choice, ridges);
     Attempt attempt = attempt_exact(field, seen, options, effort, host, data.report);
     if (n < max_attempts && evaluations < options.max_evaluations && !effort.spent() &&
         disagrees(attempt.seen, attempt.albedo)) {
       evaluations += effort.evaluations;
       if (add_ridges(ridges, field, attempt.seen)) {
-        seen = examine(f, options, ridges);
+        seen = examine(subject, options, ridges);
         continue;
       }
     }
-    refuse_albedo_out_of_range(attempt.albedo, data.target, f.traits().name);
+    refuse_albedo_out_of_range(attempt.albedo, data.target, traits.name);
     if (options.domain) {
-      const Domain own = choose_domain(f, options, seen, ridges, host);
-      const Field fit{f, options.target, own, own.half() && !seen.mirror_symmetric, ridges, seen.frame};
-      refuse_unfit_domain(attempt.albedo, fit, host);
+      const DomainChoice own = choose_domain(subject, options, seen, ridges, host);
+      refuse_unfit_domain(attempt.albedo, field_of(subject, seen, own, ridges), host);
     }
     refuse_disagreement(attempt.seen, attempt.albedo, field, effort.spent());
     state_misses(attempt.seen, attempt.albedo);
@@ -173,21 +178,33 @@ SamplerData build(const AnyBrdf& f, const BuildOptions& the_options, const Host&
     // Bounds are a density, too: where the effort did not reach for a better one, they serve.
     if (effort.spent() && worst_variance(attempt.one_shot) > options.expected_trials - 1)
       attempt.one_shot = attempt.exact;
-    data.frame = seen.frame, data.domain = domain;
+    data.frame = seen.frame, data.domain = choice.domain;
+    data.parameters = subject.parameters, data.law = choice.law;
     data.albedo = attempt.albedo;
-    data.exact_partition = partition_of(attempt.exact);
+    data.exact_partition = partition_of(attempt.exact, subject.parameters);
     for (const Slab& slab : attempt.exact) data.exact.push_back(majorant_tree(slab));
-    data.one_shot_partition = partition_of(attempt.one_shot);
+    data.one_shot_partition = partition_of(attempt.one_shot, subject.parameters);
     for (const Slab& slab : attempt.one_shot) data.one_shot.push_back(density_tree(slab));
     data.report.one_shot_variance = median_variance(attempt.one_shot);
     data.report.evaluations = evaluations + effort.evaluations;
-    data.report.notes =
-        notes_on(attempt.exact, attempt.one_shot, attempt.albedo, options, spent || effort.spent());
+    data.report.notes = notes_on(attempt.exact, attempt.one_shot, attempt.albedo, subject.parameters, options,
+                                 spent || effort.spent());
     break;
   }
-  data.probes = probe_identity(f, options.target);
+  data.probes =
+      subject.family ? probe_identity(*subject.family, options.target) : probe_identity(f, options.target);
   host.progress(1);
   return data;
+}
+
+}  // namespace
+
+SamplerData build(const AnyBrdf& f, const BuildOptions& options, const Host& host) {
+  return build_of({f}, options, host);
+}
+
+SamplerData build(const AnyFamily& family, const BuildOptions& options, const Host& host) {
+  return build_of(subject_of(family), options, host);
 }
 
 }  // namespace reflectree

@@ -13,10 +13,11 @@ namespace {
 // nearest to the middle.
 struct Cut {
   std::size_t slab = 0;
-  std::size_t axis = 0;
+  std::size_t axis = 0;  // of the boxes
 };
 Cut cut_of(const std::vector<Slab>& slabs, std::size_t begin, std::size_t end) {
-  const auto parts = [&](std::size_t at, std::size_t axis) {
+  const auto parts = [&](std::size_t at, std::size_t box_axis) {
+    const std::size_t axis = slabs[at].box.slot[box_axis];
     const float border = slabs[at].box.lo[axis];
     for (std::size_t s = begin; s < end; ++s) {
       if (s < at ? slabs[s].box.hi[axis] > border : slabs[s].box.lo[axis] < border) return false;
@@ -41,17 +42,20 @@ void add_borders(const std::vector<Slab>& slabs, std::size_t begin, std::size_t 
   }
   const Cut cut = cut_of(slabs, begin, end);
   partition.axis.push_back(std::uint8_t(cut.axis));
-  partition.split.push_back(slabs[cut.slab].box.lo[cut.axis]);
+  partition.split.push_back(slabs[cut.slab].box.lo[slabs[cut.slab].box.slot[cut.axis]]);
   add_borders(slabs, begin, cut.slab, partition);
   add_borders(slabs, cut.slab, end, partition);
 }
 
 }  // namespace
 
-Partition partition_of(const std::vector<Slab>& slabs) {
+Partition partition_of(const std::vector<Slab>& slabs, const std::vector<KnownParameter>& parameters) {
   Partition partition;
   partition.coordinates = {{"theta_o", 0, theta_max}};
-  if (slabs.front().box.axes > 1) partition.coordinates.push_back({"phi_o", 0, slabs.back().box.hi[1]});
+  const KnownBox& last = slabs.back().box;
+  if (last.axes > 1 && last.slot[1] == 1) partition.coordinates.push_back({"phi_o", 0, last.hi[1]});
+  for (const KnownParameter& p : parameters)
+    partition.coordinates.push_back({p.range.name, lowest(p), highest(p)});
   add_borders(slabs, 0, slabs.size(), partition);
   return partition;
 }
@@ -93,6 +97,14 @@ double fill(CanonicalTree& tree, const Slab& slab) {
 }
 
 }  // namespace
+
+std::size_t slab_index(const Partition& partition, const Viewer& viewer, const KnownBox& whole) {
+  const Known known = known_of(viewer, whole);
+  std::array<float, known_slots> along{};
+  for (int axis = 0; axis < whole.axes; ++axis)
+    along[std::size_t(axis)] = known[whole.slot[std::size_t(axis)]];
+  return find_slab(partition, along);
+}
 
 MajorantTree majorant_tree(const Slab& slab) {
   MajorantTree tree;

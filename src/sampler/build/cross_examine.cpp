@@ -21,8 +21,10 @@ constexpr std::size_t most_surprises = 64;
 
 // The share of all viewers, uniform in the known coordinates, that are in the slab.
 double share_of_viewers(const Slab& slab, const Field& field) {
-  double share = double(slab.box.width(0)) / double(theta_max);
-  if (slab.box.axes > 1) share *= double(slab.box.width(1)) / double(azimuth_span(field.frame.symmetry));
+  const KnownBox whole = field.whole();
+  double share = 1;
+  for (int axis = 0; axis < whole.axes; ++axis)
+    share *= double(slab.box.width(axis)) / double(whole.width(axis));
   return share;
 }
 
@@ -40,18 +42,22 @@ struct Mean {
 // Two of three probes uniform over the hemisphere, the third over the square.
 std::vector<FieldPoint> probes(const Field& field, std::size_t count, Pcg32& u) {
   const Domain& domain = field.domain;
+  const KnownBox whole = field.whole();
   std::vector<FieldPoint> points;
   for (std::size_t i = 0; i < count; ++i) {
     const float theta = theta_max * to_unit_float(u());
     const float a = to_unit_float(u()), b = to_unit_float(u());
-    const float phi_o = field.axes() > 1 ? azimuth_span(field.frame.symmetry) * to_unit_float(u()) : 0.f;
-    const Direction wo = viewer_at({theta, phi_o});
+    Shares share{};
+    for (int axis = 1; axis < whole.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
+    Known known = whole.at(share);
+    known[0] = theta;
+    const Viewer viewer = viewer_at(known);
     if (i % 3 == 0) {
-      points.push_back({wo, square_point(domain.symmetry, a, b)});
+      points.push_back(field_point(viewer, square_point(domain.symmetry, a, b)));
       continue;
     }
     const float z = max(b, 1e-4f), r = sqrt(1 - z * z), phi = (domain.half() ? pi : 2 * pi) * a;
-    points.push_back({wo, field.place_of(wo, {r * cos(phi), r * sin(phi), z})});
+    points.push_back(field_point(viewer, field.place_of(viewer, {r * cos(phi), r * sin(phi), z})));
   }
   return points;
 }
@@ -71,27 +77,25 @@ void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain,
     const Box box = box_of(leaf.cell, domain);
     const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
                         box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
-    Known share{};
+    Shares share{};
     for (int axis = 0; axis < slab.box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
     known.push_back(slab.box.at(share));
-    points.push_back({viewer_at(known.back()), p});
+    points.push_back(field_point(viewer_at(known.back()), p));
     bounds.push_back(leaf.height * shape(leaf, box, p));
   }
-}
-
-KnownBox space_of(const Field& field) {
-  return {{}, {theta_max, azimuth_span(field.frame.symmetry)}, field.axes()};
 }
 
 // The albedo of viewers in boxes under suspicion, by a finer cubature than those that made the table.
 std::vector<WrongAlbedo> look_at_albedo(const std::vector<KnownBox>& boxes, const Survey& survey, Pcg32& u) {
   constexpr int each = 9;
   std::vector<Known> known;
-  std::vector<Direction> viewers;
+  std::vector<Viewer> viewers;
   for (const KnownBox& box : boxes) {
     for (int i = 0; i < each; ++i) {
       const float across = (float(i) + to_unit_float(u())) / each;
-      known.push_back(box.at({box.axes > 1 ? to_unit_float(u()) : across, across}));
+      Shares share{box.axes > 1 ? to_unit_float(u()) : across, across};
+      for (int axis = 2; axis < box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
+      known.push_back(box.at(share));
       viewers.push_back(viewer_at(known.back()));
     }
   }
@@ -99,10 +103,10 @@ std::vector<WrongAlbedo> look_at_albedo(const std::vector<KnownBox>& boxes, cons
       integrate(survey.field, viewers, {1e-3, 24, 12, true, 0.87f, 0.87f}, survey.host, survey.effort);
   std::vector<WrongAlbedo> wrong;
   for (std::size_t i = 0; i < viewers.size(); ++i) {
-    if (survey.at_jump(viewers[i])) continue;
+    if (survey.at_jump(viewers[i].wo)) continue;
     const double a = double(survey.albedo_at(viewers[i])), b = seen.values[i], larger = std::max(a, b);
     const double miss =
-        larger > 0 ? (std::abs(a - b) / larger - seen.error) / times_allowed(viewers[i].z) : 0;
+        larger > 0 ? (std::abs(a - b) / larger - seen.error) / times_allowed(viewers[i].wo.z) : 0;
     if (miss > double(survey.albedo.relative_error)) wrong.push_back({known[i], a, b, miss});
   }
   std::stable_sort(wrong.begin(), wrong.end(),
@@ -116,26 +120,27 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
                                const FieldPoint& brightest, std::uint64_t seed) {
   constexpr std::size_t probe_count = 3U << 16U;
   const Domain& domain = survey.field.domain;
-  const std::size_t draw_count = std::size_t(survey.field.axes() > 1 ? 4 : 1) << 16U;
+  const std::size_t draw_count = std::size_t(survey.field.whole().axes > 1 ? 4 : 1) << 16U;
   Pcg32 u(seed, 23);
   CrossExamination result;
 
-  const Partition partition = partition_of(slabs);
+  const KnownBox whole = survey.field.whole();
+  const Partition partition = partition_of(slabs, survey.field.parameters);
   std::vector<FieldPoint> points = probes(survey.field, probe_count, u);
   points.push_back(brightest);
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (survey.at_jump(points[i].wo)) continue;
-    const float a = survey.albedo_at(points[i].wo);
+    const float a = survey.albedo_at(points[i].viewer());
     if (!(values[i].upper > 0)) continue;
-    const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
-    const Slab& slab = slabs[find_slab(partition, known)];
+    const Slab& slab = slabs[slab_index(partition, points[i].viewer(), whole)];
     const Leaf& leaf = slab.nodes[leaf_at(slab, points[i].p, domain)].leaf;
     const float bound = leaf.height * shape(leaf, box_of(leaf.cell, domain), points[i].p);
     const float ratio = a > 0 ? values[i].upper / (a * bound) : std::numeric_limits<float>::infinity();
     if (!(ratio > surprising)) continue;
-    result.surprises.push_back({points[i].wo, survey.field.direction_at(points[i]), ratio, points[i].p});
+    result.surprises.push_back(
+        {points[i].viewer(), survey.field.direction_at(points[i]), ratio, points[i].p});
   }
   std::stable_sort(result.surprises.begin(), result.surprises.end(),
                    [](const Surprise& a, const Surprise& b) { return a.ratio > b.ratio; });
@@ -161,7 +166,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
     const auto volume = double(total(slabs[s], &Leaf::cost));
     Mean once, accepted;
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) {
-      const float a = survey.albedo_at(points[i].wo);
+      const float a = survey.albedo_at(points[i].viewer());
       if (!(a > 0) || survey.at_jump(points[i].wo)) continue;
       // Of mirror images on half a square one is drawn: their mean is what is accepted.
       const double ratio = double(values[i].mean) / (double(a) * double(bounds[i]));
@@ -180,7 +185,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   } else {
     result.by_bounds = result.accepted = 1;
   }
-  result.wrong = look_at_albedo(odd_windows(draws, space_of(survey.field)), survey, u);
+  result.wrong = look_at_albedo(odd_windows(draws, whole), survey, u);
   return result;
 }
 

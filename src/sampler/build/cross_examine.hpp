@@ -8,9 +8,10 @@ namespace reflectree::detail {
 
 // A direction at which f towers over its bound, or has a value where the albedo says that there is none.
 struct Surprise {
-  Direction wo, wi;  // in the viewer's frame
-  float ratio;       // of T / albedo to the bound; infinite where the albedo is 0
-  Vec2<float> p{};   // the place of wi in the square
+  Viewer viewer;
+  Direction wi;     // in the viewer's frame
+  float ratio;      // of T / albedo to the bound; infinite where the albedo is 0
+  Vec2<float> p{};  // the place of wi in the square
 };
 
 // A viewer for whom the table of the albedo is not what cubature finds.

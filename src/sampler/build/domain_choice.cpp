@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "examine.hpp"
 #include "grow.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
+#include "subject.hpp"
 
 namespace reflectree::detail {
 
@@ -31,9 +31,9 @@ float folding_cost(const std::vector<Slab>& slabs, const Field& field, std::uint
       const Leaf& leaf = slab.nodes[i].leaf;
       const Box box = box_of(leaf.cell, field.domain);
       for (cost += double(leaf.cost); next < cost; next += step) {
-        points.push_back(
-            {slab.views[slab.views.size() / 2].wo,
-             {box.x0 + box.width * to_unit_float(u()), box.y0 + box.height * to_unit_float(u())}});
+        const float x = to_unit_float(u()), y = to_unit_float(u());
+        points.push_back(field_point(slab.views[slab.views.size() / 2].viewer,
+                                     {box.x0 + box.width * x, box.y0 + box.height * y}));
         weight.push_back(1 / double(leaf.height));
       }
     }
@@ -72,7 +72,7 @@ std::vector<KnownBox> trial_boxes(const ViewerFrame& frame) {
   return boxes;
 }
 
-std::vector<Domain> candidates(const Examination& seen) {
+std::vector<Domain> domains_for(const Examination& seen) {
   if (seen.frame.isotropic()) {
     const Symmetry symmetry = seen.asymmetry <= half_square_up_to ? Symmetry::mirror : Symmetry::none;
     return {{DomainKind::half_vector, symmetry, 0},    {DomainKind::equal_area, symmetry, 0},
@@ -96,26 +96,96 @@ std::vector<Domain> candidates(const Examination& seen) {
   return list;
 }
 
+// Boxes for families: wider, so that what the parameters cost shows, and fewer where more is known.
+std::vector<KnownBox> family_boxes(const Field& field) {
+  constexpr float degree = pi / 180;
+  const KnownBox whole = field.whole();
+  const bool few = whole.axes > 2;
+  std::vector<KnownBox> boxes;
+  constexpr struct {
+    float theta, width;
+  } trials[] = {{2, 3}, {20, 3}, {40, 3}, {60, 3}, {75, 2}, {84, 1}, {88.5f, 0.5f}};
+  for (std::size_t i = 0; i < std::size(trials); i += few ? 2 : 1) {
+    KnownBox box = whole;
+    box.lo[0] = trials[i].theta * degree, box.hi[0] = (trials[i].theta + trials[i].width) * degree;
+    boxes.push_back(box);
+  }
+  for (int axis = 1; axis < whole.axes; ++axis) {
+    std::vector<KnownBox> next;
+    const auto k = std::size_t(whole.slot[std::size_t(axis)]);
+    const float across = k == 1 ? min(10 * degree, 0.1f * whole.width(axis)) : 0.08f * whole.width(axis);
+    const std::vector<float> shares =
+        few ? std::vector<float>{0.08f, 0.7f} : std::vector<float>{0, 0.3f, 0.6f, 0.92f};
+    for (const KnownBox& box : boxes) {
+      for (const float share : shares) {
+        next.push_back(box);
+        next.back().lo[k] = linear_mix(share, whole.lo[k], whole.hi[k]);
+        next.back().hi[k] = min(next.back().lo[k] + across, whole.hi[k]);
+      }
+    }
+    boxes = std::move(next);
+  }
+  return boxes;
+}
+
+std::vector<DomainChoice> candidates(const Subject& subject, const Examination& seen) {
+  std::vector<DomainChoice> list;
+  if (subject.family) {
+    // Widths that follow the lobes' by a power: less than 1, since what grazes does not widen with them.
+    const Symmetry symmetry =
+        seen.frame.isotropic() && seen.asymmetry <= half_square_up_to ? Symmetry::mirror : Symmetry::none;
+    for (const float power : {0.7f, 0.55f, 0.85f, 0.4f, 1.f, 0.f}) {
+      DomainChoice choice{{DomainKind::scaled_star, symmetry}, seen.widths};
+      for (auto* law : {&choice.law.x, &choice.law.y}) {
+        for (float& factor : *law) factor *= power;
+      }
+      list.push_back(choice);
+    }
+  }
+  for (const Domain& domain : domains_for(seen)) {
+    if (!subject.family || domain.kind != DomainKind::slope_star) list.push_back({domain});
+  }
+  return list;
+}
+
+// An albedo of 1 for every viewer.
+AlbedoTable flat_albedo(const Field& field) {
+  AlbedoTable flat{{min_cos_theta_o, 1}, {}, 0};
+  std::size_t rows = 1;
+  if (!field.frame.isotropic()) {
+    const float span = azimuth_span(field.frame.symmetry);
+    flat.phi_o = {0, 0.5f * span, span}, rows = 3;
+    flat.even = is_mirrored(field.frame.symmetry);
+  }
+  for (const KnownParameter& p : field.parameters)
+    flat.parameters.push_back({lowest(p), highest(p), 4}), rows *= 4;
+  flat.albedo.assign(2 * rows, 1);
+  return flat;
+}
+
 }  // namespace
 
-Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examination& seen,
-                     const std::vector<Ridge>& ridges, const Host& host) {
-  AlbedoTable flat{{min_cos_theta_o, 1}, {1, 1}, 0};
+Field field_of(const Subject& subject, const Examination& seen, const DomainChoice& choice,
+               const std::vector<Ridge>& ridges) {
+  const bool both_sides = choice.domain.half() && !seen.mirror_symmetric;
+  return {subject.f,  seen.target,    choice.domain,      both_sides, ridges,
+          seen.frame, subject.family, subject.parameters, choice.law};
+}
+
+DomainChoice choose_domain(const Subject& subject, const BuildOptions& options, const Examination& seen,
+                           const std::vector<Ridge>& ridges, const Host& host) {
+  const Field any = field_of(subject, seen, {}, ridges);
+  const AlbedoTable flat = flat_albedo(any);
   // A coarser goal, and no slab is halved: what the known coordinates cost is counted in.
   const float goal = 1 + 2 * (options.expected_trials - 1);
   GrowthRules rules{goal, 1, 2000, false, true, analyse_exact, 1e30f};
-  const std::vector<KnownBox> boxes = trial_boxes(seen.frame);
-  if (!seen.frame.isotropic()) {
-    const float span = azimuth_span(seen.frame.symmetry);
-    flat.phi_o = {0, 0.5f * span, span}, flat.albedo = {1, 1, 1, 1, 1, 1};
-    flat.even = is_mirrored(seen.frame.symmetry);
-  }
-  Domain best;
+  const std::vector<KnownBox> boxes = subject.family ? family_boxes(any) : trial_boxes(seen.frame);
+  DomainChoice best;
   std::vector<Slab> best_slabs;
   float least = 1e30f;
   double best_mass = 0;
-  for (const Domain& domain : candidates(seen)) {
-    const Field field{f, seen.target, domain, domain.half() && !seen.mirror_symmetric, ridges, seen.frame};
+  for (const DomainChoice& choice : candidates(subject, seen)) {
+    const Field field = field_of(subject, seen, choice, ridges);
     std::vector<Slab> slabs;
     for (const KnownBox& box : boxes) slabs.push_back(make_slab(box, flat, field));
     Effort effort{0, options.max_evaluations / 20};
@@ -124,7 +194,7 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
     double mass = 0;  // what the domain's grids saw: one that oversaw a lobe is cheap for that reason
     for (const Slab& slab : slabs) {
       double cost = 0, ideal = 0;
-      std::array<double, 2> known_cost{};
+      std::array<double, known_slots> known_cost{};
       float leaves = 0;
       for (const Node& node : slab.nodes) {
         if (node.split != TreeSplit::leaf) continue;
@@ -142,17 +212,16 @@ Domain choose_domain(const AnyBrdf& f, const BuildOptions& options, const Examin
     }
     const bool blind = mass == 0 && best_mass > 0, sees_more = mass > 0 && best_mass == 0;
     if (sees_more || (price < least && !blind))
-      least = price, best = domain, best_mass = mass, best_slabs = std::move(slabs);
+      least = price, best = choice, best_mass = mass, best_slabs = std::move(slabs);
     // A domain that needs in one slab twice as many leaves as the best in all cannot win.
     rules.max_leaves = std::size_t(clamp(2 * least, 32.f, 2000.f));
-    if (!seen.frame.isotropic())  // of many boxes: one that needs so many more than they do on average
+    if (boxes.front().axes > 1)  // of many boxes: one that needs so many more than they do on average
       rules.max_leaves = std::size_t(clamp(6 * least / float(boxes.size()), 32.f, 2000.f));
   }
   // Leaves grow as 1 / (what is left of the trials allowed): past half of them a whole square is cheaper.
-  if (best.half() && !seen.mirror_symmetric) {
-    const Field field{f, seen.target, best, true, ridges, seen.frame};
-    const float cost = folding_cost(best_slabs, field, options.seed);
-    if (!(cost < 0.5f * (options.expected_trials - 1))) best.symmetry = Symmetry::none;
+  if (best.domain.half() && !seen.mirror_symmetric) {
+    const float cost = folding_cost(best_slabs, field_of(subject, seen, best, ridges), options.seed);
+    if (!(cost < 0.5f * (options.expected_trials - 1))) best.domain.symmetry = Symmetry::none;
   }
   return best;
 }

@@ -165,31 +165,6 @@ bool is_anisotropic(const AnyBrdf& f, const Values& values, const std::vector<Di
       .has_value();
 }
 
-// How far, in slopes of the half vector and for the viewer at the normal, the lobe reaches at an azimuth:
-// where T has fallen to half of its height above the ground at 45 degrees.
-float reach_at(const AnyBrdf& f, const Target& target, float phi) {
-  constexpr int steps = 160;
-  std::vector<Direction> wo, wi;
-  const Direction normal{0, 0, 1};
-  for (int i = 0; i <= steps; ++i) {
-    const float slope = i == 0 ? 0.f : std::pow(10.f, -4 + 4 * float(i) / steps) * 0.41f;
-    const Direction wh = normalize(Direction{slope * cos(phi), slope * sin(phi), 1});
-    wo.push_back(normal), wi.push_back(reflect(normal, wh));
-  }
-  const Values values = values_at(f, wo, wi);
-  const auto t = [&](int i) { return target(&values[std::size_t(i * f.channels())], f.channels()); };
-  const float ground = t(steps), top = t(0);
-  if (!(top > 1.5f * ground)) return 1;
-  for (int i = 1; i <= steps; ++i) {
-    if (t(i) - ground < 0.5f * (top - ground)) {
-      const float a = t(i - 1) - ground, b = t(i) - ground, half = 0.5f * (top - ground);
-      const float x = float(i - 1) + (a - half) / max(a - b, 1e-30f);
-      return std::pow(10.f, -4 + 4 * x / steps);
-    }
-  }
-  return 1;
-}
-
 // The azimuth along which lobes reach farthest, and how much farther than across.
 struct Ellipse {
   float axis = 0, ratio = 1;
@@ -299,15 +274,20 @@ void fold_pair(ViewerSymmetry symmetry, Direction& wo, Direction& wi) {
   if (plane && wo.y < 0) mirror();
 }
 
-// The frame of an anisotropic function, from pairs whose viewers lie at azimuth 0: they are turned about the
-// normal at random.
-void examine_anisotropic(const AnyBrdf& f, std::uint64_t seed, std::vector<Direction> wo,
-                         std::vector<Direction> wi, Examination& seen) {
+// Pairs whose viewers lie at azimuth 0, turned about the normal.
+void turn_at_random(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Direction>& wi) {
   Pcg32 u(seed, 15);
   for (std::size_t k = 0; k < wo.size(); ++k) {
     const float phi = 6.2831853f * to_unit_float(u()), c = cos(phi), s = sin(phi);
     wo[k] = turn(wo[k], c, s), wi[k] = turn(wi[k], c, s);
   }
+}
+
+// The frame of an anisotropic function, from pairs whose viewers lie at azimuth 0: they are turned about the
+// normal at random.
+void examine_anisotropic(const AnyBrdf& f, std::uint64_t seed, std::vector<Direction> wo,
+                         std::vector<Direction> wi, Examination& seen) {
+  turn_at_random(seed, wo, wi);
   const Values values = values_at(f, wo, wi);
   refuse_bad_values(f, values, wo, wi);
   const Ellipse lobe = ellipse_of(f, seen.target);
@@ -324,6 +304,47 @@ void examine_anisotropic(const AnyBrdf& f, std::uint64_t seed, std::vector<Direc
 }
 
 }  // namespace
+
+bool has_symmetry(const AnyBrdf& f, const ViewerFrame& frame, std::uint64_t seed) {
+  if (frame.symmetry == ViewerSymmetry::none) return true;
+  std::vector<Direction> wo, wi;
+  make_pairs(seed, wo, wi);
+  turn_at_random(seed, wo, wi);
+  const Values values = values_at(f, wo, wi);
+  const auto holds = [&](const auto& image) { return !change_under(f, values, wo, wi, seed, image); };
+  if (frame.isotropic()) return !is_anisotropic(f, values, wo, wi, seed);
+  const bool turns =
+      frame.symmetry == ViewerSymmetry::half_turn || frame.symmetry == ViewerSymmetry::two_planes;
+  if (turns && !holds([](std::size_t, Direction w) { return Direction{-w.x, -w.y, w.z}; })) return false;
+  if (!is_mirrored(frame.symmetry)) return true;
+  const float c = cos(2 * frame.axis), s = sin(2 * frame.axis);
+  return holds([&](std::size_t, Direction w) {
+    return Direction{c * w.x + s * w.y, s * w.x - c * w.y, w.z};
+  });
+}
+
+float reach_at(const AnyBrdf& f, const Target& target, float phi) {
+  constexpr int steps = 160;
+  std::vector<Direction> wo, wi;
+  const Direction normal{0, 0, 1};
+  for (int i = 0; i <= steps; ++i) {
+    const float slope = i == 0 ? 0.f : std::pow(10.f, -4 + 4 * float(i) / steps) * 0.41f;
+    const Direction wh = normalize(Direction{slope * cos(phi), slope * sin(phi), 1});
+    wo.push_back(normal), wi.push_back(reflect(normal, wh));
+  }
+  const Values values = values_at(f, wo, wi);
+  const auto t = [&](int i) { return target(&values[std::size_t(i * f.channels())], f.channels()); };
+  const float ground = t(steps), top = t(0);
+  if (!(top > 1.5f * ground)) return 1;
+  for (int i = 1; i <= steps; ++i) {
+    if (t(i) - ground < 0.5f * (top - ground)) {
+      const float a = t(i - 1) - ground, b = t(i) - ground, half = 0.5f * (top - ground);
+      const float x = float(i - 1) + (a - half) / max(a - b, 1e-30f);
+      return std::pow(10.f, -4 + 4 * x / steps);
+    }
+  }
+  return 1;
+}
 
 Examination examine(const AnyBrdf& f, const BuildOptions& options, const std::vector<Ridge>& ridges) {
   std::vector<Direction> wo, wi;

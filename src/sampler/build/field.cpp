@@ -33,6 +33,14 @@ Direction seen_by_domain(const Field& field, Direction wo) {
   return {sqrt(wo.x * wo.x + wo.y * wo.y), 0, wo.z};
 }
 
+// The domain of the member.
+Domain domain_of(const Field& field, const Coordinates& at) {
+  Domain domain = field.domain;
+  if (!field.parameters.empty())
+    domain.scale_x = scale_by(field.law.x, at), domain.scale_y = scale_by(field.law.y, at);
+  return domain;
+}
+
 // In the caller's frame.
 ShadingGeometry<float> geometry_for_caller(const Field& field, const FieldPoint& point,
                                            const ShadingGeometry<float>& g) {
@@ -53,14 +61,28 @@ Direction Field::to_caller(Direction w) const {
   return frame.isotropic() ? w : turn(w, cos(frame.axis), sin(frame.axis));
 }
 
-Vec2<float> Field::place_of(Direction wo, Direction wi) const {
-  const Turn t = turn_of(*this, wo);
-  return lower(domain, seen_by_domain(*this, wo), fold(domain.symmetry, turn(wi, t.cosine, -t.sine)));
+KnownBox Field::whole() const {
+  KnownBox box{{}, {theta_max}, 1};
+  const auto add = [&box](std::size_t slot, float lo, float hi) {
+    box.lo[slot] = lo, box.hi[slot] = hi;
+    box.slot[std::size_t(box.axes++)] = std::uint8_t(slot);
+  };
+  if (!frame.isotropic()) add(1, 0, azimuth_span(frame.symmetry));
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    add(2 + i, lowest(parameters[i]), highest(parameters[i]));
+  return box;
+}
+
+Vec2<float> Field::place_of(const Viewer& viewer, Direction wi) const {
+  const Turn t = turn_of(*this, viewer.wo);
+  return lower(domain_of(*this, viewer.at), seen_by_domain(*this, viewer.wo),
+               fold(domain.symmetry, turn(wi, t.cosine, -t.sine)));
 }
 
 Direction Field::direction_at(const FieldPoint& point) const {
   const Turn t = turn_of(*this, point.wo);
-  return turn(lift(domain, seen_by_domain(*this, point.wo), point.p).geometry.wi, t.cosine, t.sine);
+  const Domain member = domain_of(*this, point.at);
+  return turn(lift(member, seen_by_domain(*this, point.wo), point.p).geometry.wi, t.cosine, t.sine);
 }
 
 void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
@@ -69,25 +91,44 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   const std::size_t most = std::min(points.size(), f.traits().concurrent ? block : large_block);
   std::vector<ShadingGeometry<float>> geometry(most * images);
   std::vector<float> values(geometry.size() * std::size_t(channels)), area(most);
+  std::vector<Parameters> members(family ? geometry.size() : 0);
+  Domain member = domain;
+  Parameters member_values{};
+  const FieldPoint* last = nullptr;  // whose member is at hand
   for (std::size_t begin = 0; begin < points.size(); begin += most) {
     const std::size_t end = std::min(points.size(), begin + most);
     const std::size_t count = end - begin;
     for (std::size_t k = 0; k < count; ++k) {
       const FieldPoint& point = points[begin + k];
-      const DomainPoint q = lift(domain, seen_by_domain(*this, point.wo), point.p);
+      if (family) {
+        if (!last || last->at != point.at)
+          member = domain_of(*this, point.at), member_values = values_of(parameters, point.at);
+        last = &point;
+        for (std::size_t i = 0; i < images; ++i) members[k * images + i] = member_values;
+      }
+      const DomainPoint q = lift(member, seen_by_domain(*this, point.wo), point.p);
       geometry[k * images] = frame.isotropic() ? q.geometry : geometry_for_caller(*this, point, q.geometry);
       area[k] = q.projected_area;
       if (!both_sides) continue;
       ShadingGeometry<float>& mirrored = geometry[k * images + 1] = q.geometry;
       mirrored.wi.y = -mirrored.wi.y, mirrored.wh.y = -mirrored.wh.y;
     }
-    f.eval({geometry.data(), count * images}, {values.data(), count * images * std::size_t(channels)});
+    const std::span<const ShadingGeometry<float>> asked(geometry.data(), count * images);
+    const std::span<float> answers(values.data(), count * images * std::size_t(channels));
+    if (family) {
+      family->eval(asked, {members.data(), asked.size()}, answers);
+    } else {
+      f.eval(asked, answers);
+    }
     const auto target_of = [&](std::size_t k) {
       const std::span<const float> value(values.data() + k * std::size_t(channels), std::size_t(channels));
       const float t = target(value.data(), channels);
       bool good = is_good(t);
       for (const float v : value) good = good && v >= 0;
-      if (!good) refuse_values(value, f.traits().name, geometry[k].wo, geometry[k].wi);
+      if (!good) {
+        const std::string member_name = family ? ", " + to_text(family->ranges(), members[k]) : "";
+        refuse_values(value, f.traits().name + member_name, geometry[k].wo, geometry[k].wi);
+      }
       return t;
     };
     for (std::size_t k = 0; k < count; ++k) {
@@ -98,13 +139,14 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   }
 }
 
-std::vector<Landmark> Field::landmarks(Direction wo) const {
+std::vector<Landmark> Field::landmarks(const Viewer& viewer) const {
+  const Direction wo = viewer.wo;
   constexpr float coarse = 1.f / 128;
   std::vector<Landmark> places;
   for (const Direction& wi : {Direction{-wo.x, -wo.y, wo.z}, wo})
-    places.push_back({place_of(wo, wi), {coarse, coarse}});
+    places.push_back({place_of(viewer, wi), {coarse, coarse}});
   std::vector<SharpLobe> lobes;
-  if (f.traits().sharp) {
+  if (f.traits().sharp && !family) {  // of a member, which others need not share
     lobes = f.traits().sharp(to_caller(wo));
     for (SharpLobe& lobe : lobes) {
       if (!frame.isotropic()) lobe.centre = turn(lobe.centre, cos(frame.axis), -sin(frame.axis));
@@ -116,12 +158,12 @@ std::vector<Landmark> Field::landmarks(Direction wo) const {
   for (const SharpLobe& lobe : lobes) {
     if (!(lobe.centre.z > 0) || !(lobe.width > 0)) continue;
     const LocalFrame<float> around = frame_from_normal(lobe.centre);
-    Landmark at{place_of(wo, lobe.centre), {0, 0}};
+    Landmark at{place_of(viewer, lobe.centre), {0, 0}};
     // How far the square's coordinates reach over the lobe, along two directions; azimuths that wrap are far.
     for (const Direction& tangent : {around.s, around.t}) {
       const Direction beside = normalize(lobe.centre + min(lobe.width, 0.5f) * tangent);
       if (!(beside.z > 0)) continue;
-      const Vec2<float> q = place_of(wo, beside);
+      const Vec2<float> q = place_of(viewer, beside);
       at.size = {max(at.size.x, abs(q.x - at.p.x)), max(at.size.y, abs(q.y - at.p.y))};
     }
     at.size = {clamp(at.size.x, 0x1p-15f, coarse), clamp(at.size.y, 0x1p-15f, coarse)};
@@ -130,13 +172,16 @@ std::vector<Landmark> Field::landmarks(Direction wo) const {
   return places;
 }
 
-float Survey::albedo_at(Direction wo) const {
+float albedo_of(const Field& field, const AlbedoTable& albedo, const Viewer& viewer) {
+  const Direction wo = viewer.wo;
+  if (field.family)
+    return reflectree::albedo_at(albedo, wo.z, field.frame.isotropic() ? 0 : azimuth_of(wo), viewer.at);
   if (field.frame.isotropic()) return reflectree::albedo_at(albedo, wo.z);
   return reflectree::albedo_at(albedo, wo.z, azimuth_of(wo));
 }
 
 bool Survey::at_jump(Direction wo) const {
-  if (!jumps) return false;
+  if (!jumps || (jumps->theta_o.empty() && jumps->phi_o.empty())) return false;
   const float theta = theta_of_viewer(wo);
   for (const ThetaJump& jump : jumps->theta_o) {
     if (abs(theta - jump.at) < 4e-6f + 4e-7f / sin(max(jump.at, 1e-3f))) return true;

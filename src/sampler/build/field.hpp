@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "known_box.hpp"
-#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
@@ -21,7 +21,10 @@ namespace reflectree::detail {
 struct FieldPoint {
   Direction wo;
   Vec2<float> p;
+  Coordinates at = {};  // of families: of the parameters
+  Viewer viewer() const { return {wo, at}; }
 };
+inline FieldPoint field_point(const Viewer& viewer, Vec2<float> p) { return {viewer.wo, p, viewer.at}; }
 
 // With half domains T differs between wi and its mirror image where f is not quite mirror-symmetric:
 // exact trees bound `upper`, albedo and densities use `mean`.
@@ -43,18 +46,22 @@ struct Field {
   bool both_sides = false;         // evaluate the mirror image too
   std::vector<Ridge> ridges = {};  // sharp lobes that f did not tell of and that were met all the same
   ViewerFrame frame = {};
+  std::optional<AnyFamily> family = {};  // of which f is a member
+  std::vector<KnownParameter> parameters = {};
+  ScaleLaw law = {};
 
-  int axes() const { return frame.isotropic() ? 1 : 2; }  // of the known coordinates
+  // All that is known of viewers.
+  KnownBox whole() const;
   // Throws Error, naming the directions, for a value that is negative, NaN or infinite.
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const;
   // The place of wi in the square, and back; both directions in the viewer's frame.
-  Vec2<float> place_of(Direction wo, Direction wi) const;
+  Vec2<float> place_of(const Viewer& viewer, Direction wi) const;
   Direction direction_at(const FieldPoint& point) const;
   // From the viewer's frame to the caller's.
   Direction to_caller(Direction w) const;
   // The mirror direction of wo, wo itself, and the sharp lobes that f tells of; the same number, in the same
   // order, for every wo for which f tells of as many.
-  std::vector<Landmark> landmarks(Direction wo) const;
+  std::vector<Landmark> landmarks(const Viewer& viewer) const;
 };
 
 // What a build may cost, and has.
@@ -77,6 +84,8 @@ struct Jumps {
   std::vector<float> phi_o;        // radians, in the viewer's frame, ascending: found and told of
 };
 
+float albedo_of(const Field& field, const AlbedoTable& table, const Viewer& viewer);
+
 // What is known about a function once its domain is chosen, and by what means it is asked.
 struct Survey {
   const Field& field;
@@ -86,7 +95,7 @@ struct Survey {
   const Jumps* jumps = nullptr;
   std::vector<FieldPoint>* towers = nullptr;  // where the attack met values far above a bound are noted here
 
-  float albedo_at(Direction wo) const;
+  float albedo_at(const Viewer& viewer) const { return albedo_of(field, albedo, viewer); }
   // So close to a jump that rounding decides on which side wo is.
   bool at_jump(Direction wo) const;
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {

@@ -34,13 +34,13 @@ std::pair<const Slab*, double> worst_of(const std::vector<Slab>& slabs, const Wh
 
 bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExamination& seen) {
   constexpr std::size_t most = 16;
-  if (!field.frame.isotropic()) return false;  // ridges are followed over theta_o alone
+  if (field.whole().axes > 1) return false;  // ridges are followed over theta_o alone
   bool added = false;
   std::vector<Surprise> surprises = seen.surprises;
-  for (const FieldPoint& p : seen.towers) surprises.push_back({p.wo, field.direction_at(p), 1});
+  for (const FieldPoint& p : seen.towers) surprises.push_back({p.viewer(), field.direction_at(p), 1});
   for (const Surprise& surprise : surprises) {
     if (ridges.size() >= most) break;
-    const float theta = theta_of_viewer(surprise.wo);
+    const float theta = theta_of_viewer(surprise.viewer.wo);
     const bool known = std::any_of(ridges.begin(), ridges.end(), [&](const Ridge& ridge) {
       const auto lobe = ridge.at(theta);
       return lobe && distance(lobe->centre, surprise.wi) < 8 * lobe->width;
@@ -84,7 +84,10 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
                            : "tell of its sharp lobes by traits().sharp, or smooth it";
   if (!seen.surprises.empty()) {
     const Surprise& s = seen.surprises.front();
-    const std::string where = name + " at " + describe(field.to_caller(s.wo), field.to_caller(s.wi));
+    const std::string where =
+        name + " at " + describe(field.to_caller(s.viewer.wo), field.to_caller(s.wi)) +
+        (field.family ? ", " + to_text(field.family->ranges(), values_of(field.parameters, s.viewer.at))
+                      : "");
     if (!std::isfinite(s.ratio))
       throw Error("the function is not 0 where its albedo was found to be 0", where, mend);
     throw Error(text("the function is %.3g times its bound: a lobe that no grid resolves", double(s.ratio)),
@@ -93,12 +96,14 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
   if (albedo_disagrees(seen, albedo)) {
     const WrongAlbedo& w = seen.wrong.front();
     std::string at = text("theta_o = %.4g", double(w.known[0]) * degrees);
-    if (field.axes() > 1) {
-      const Direction wo = field.to_caller(viewer_at(w.known));
+    const Viewer viewer = viewer_at(w.known);
+    if (!field.frame.isotropic()) {
+      const Direction wo = field.to_caller(viewer.wo);
       at += text(", phi_o = %.4g degrees", std::atan2(double(wo.y), double(wo.x)) * degrees);
     } else {
       at += " degrees";
     }
+    if (field.family) at += ", " + to_text(field.family->ranges(), values_of(field.parameters, viewer.at));
     throw Error(
         text("the albedo is %.4g at %s, and %.4g beside it: a change too narrow for its table", w.found,
              at.c_str(), w.table),
@@ -113,16 +118,24 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
 }
 
 std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
-                                  const AlbedoTable& albedo, const BuildOptions& options, bool spent) {
+                                  const AlbedoTable& albedo, const std::vector<KnownParameter>& parameters,
+                                  const BuildOptions& options, bool spent) {
   std::vector<std::string> notes;
   const bool black = std::all_of(albedo.albedo.begin(), albedo.albedo.end(), [](float a) { return a == 0; });
   if (black) notes.push_back("the function is 0 wherever it was looked at: there is no sample for any wo");
-  const auto range = [](const Slab& slab) {
+  const auto range = [&parameters](const Slab& slab) {
     std::string where = text("theta_o %.4g to %.4g degrees", double(slab.box.lo[0]) * degrees,
                              double(slab.box.hi[0]) * degrees);
-    if (slab.box.axes > 1) {
-      where +=
-          text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
+    for (int axis = 1; axis < slab.box.axes; ++axis) {
+      const auto k = std::size_t(slab.box.slot[std::size_t(axis)]);
+      if (k == 1) {
+        where +=
+            text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
+        continue;
+      }
+      const KnownParameter& p = parameters[k - 2];
+      where += text(", %s %.4g to %.4g", p.range.name.c_str(), double(value_of(p, slab.box.lo[k])),
+                    double(value_of(p, slab.box.hi[k])));
     }
     return where;
   };

@@ -20,6 +20,7 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
                          bool spent);
 // What was promised and is not kept.
 std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
-                                  const AlbedoTable& albedo, const BuildOptions& options, bool spent);
+                                  const AlbedoTable& albedo, const std::vector<KnownParameter>& parameters,
+                                  const BuildOptions& options, bool spent);
 
 }  // namespace reflectree::detail

@@ -24,9 +24,8 @@ void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicC
   for (const View& view : slab.views) {
     for (int j = 0; j < grid_size; ++j) {
       for (int i = 0; i < grid_size; ++i) {
-        points.push_back({view.wo,
-                          {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
-                           box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])}});
+        points.push_back(field_point(view.viewer, {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
+                                                   box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])}));
       }
     }
   }
@@ -49,7 +48,7 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
       for (const float node : lobatto_nodes) {
         const float y = std::ldexp(box.height, -octave);
         const Vec2<float> p{box.x0 + 0.5f * box.width * (1 + node), above ? y : -y};
-        visits.push_back({task, {{view.wo, p}, view.albedo, view.known, {}}});
+        visits.push_back({task, {field_point(view.viewer, p), view.albedo, view.known, {}}});
       }
     }
   }
@@ -178,7 +177,9 @@ struct Step {
   std::vector<std::uint32_t> split;
 };
 Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_halve, float albedo_error) {
-  constexpr float narrowest[] = {1e-5f, 1e-3f};  // slabs, radians
+  constexpr float narrowest[known_slots] = {1e-5f, 1e-3f, 1e-3f, 1e-3f};  // slabs; radians for the viewer
+  // With n known and two unknown coordinates equal shares are the optimum: n / (n + 2) of the trials left.
+  constexpr float dearer[known_slots] = {1, 1.5f, 1.8f, 2};
   if (!state.active) return {};
   const float budget = rules.goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
@@ -195,13 +196,13 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
     float most = 0, all = 0;
     for (int axis = 0; axis < slab.box.axes; ++axis) {
       const float saved = total_known_cost(slab, axis);
-      if (!(slab.box.width(axis) > narrowest[axis])) continue;
+      if (!(slab.box.width(axis) > narrowest[slab.box.slot[std::size_t(axis)]])) continue;
       all += saved;
       if (dearest < 0 || saved > most) dearest = axis, most = saved;
     }
     if (dearest >= 0) state.next_check = state.leaves * 3 / 2;
     if (dearest >= 0 &&
-        all > (slab.box.axes > 1 ? 1.5f : 1.f) * rules.known_share * max(budget * ideal, cost - ideal))
+        all > dearer[slab.box.axes - 1] * rules.known_share * max(budget * ideal, cost - ideal))
       return {dearest, {}};
   }
   if (met || state.leaves >= rules.max_leaves) return {};
@@ -229,7 +230,7 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
       next_states.push_back(states[s]);
       continue;
     }
-    const auto axis = std::size_t(halved[h++].axis);
+    const auto axis = std::size_t(slabs[s].box.slot[std::size_t(halved[h++].axis)]);
     KnownBox lower = slabs[s].box, upper = lower;
     lower.hi[axis] = upper.lo[axis] = 0.5f * (lower.lo[axis] + lower.hi[axis]);
     for (const KnownBox& box : {lower, upper}) {

@@ -23,11 +23,12 @@ struct Axis {
   int intervals;
 };
 
-// Fixed points of the square, each with the viewer's other coordinate: half of them spread, half of them
-// drawn to the pole, where lobes are.
+// Fixed points of the square, each with the viewer's other coordinate and a member of the family: half of
+// them spread, half of them drawn to the pole, where lobes are.
 struct FixedPoint {
   Vec2<float> p;
   float other;
+  Coordinates at = {};  // of families
 };
 std::vector<FixedPoint> fixed_points(const Field& field, const Axis& axis, std::uint64_t seed) {
   const Domain& domain = field.domain;
@@ -38,7 +39,13 @@ std::vector<FixedPoint> fixed_points(const Field& field, const Axis& axis, std::
     float y = to_unit_float(u());
     if (i % 2) y = std::pow(10.f, -3 * y);
     const Vec2<float> at{2 * to_unit_float(u()) - 1, domain.half() || u() % 2 ? y : -y};
-    p.push_back({at, span * to_unit_float(around())});
+    const float other = span * to_unit_float(around());
+    Coordinates member{};
+    for (std::size_t k = 0; k < field.parameters.size(); ++k) {
+      const KnownParameter& q = field.parameters[k];
+      member[k] = linear_mix(to_unit_float(around()), lowest(q), highest(q));
+    }
+    p.push_back({at, other, member});
   }
   return p;
 }
@@ -46,7 +53,7 @@ std::vector<FixedPoint> fixed_points(const Field& field, const Axis& axis, std::
 using Values = std::vector<float>;
 
 Direction viewer_on(const Axis& axis, double at, float other) {
-  if (axis.azimuth) return viewer_at({other, float(at)});
+  if (axis.azimuth) return viewer_at({other, float(at)}).wo;
   return turned_to(wo_from_cosine(clamp(float(std::cos(at)), min_cos_theta_o, 1.f)), other);
 }
 
@@ -55,7 +62,7 @@ std::vector<Values> values_at(const Field& field, const Axis& axis, const std::v
                               const std::vector<double>& places, const Host& host, Effort& effort) {
   std::vector<FieldPoint> all;
   for (const double at : places) {
-    for (const FixedPoint& q : p) all.push_back({viewer_on(axis, at, q.other), q.p});
+    for (const FixedPoint& q : p) all.push_back({viewer_on(axis, at, q.other), q.p, q.at});
   }
   std::vector<FieldValue> values(all.size());
   eval_in_parallel(field, host, effort, all, values);

@@ -67,7 +67,11 @@ bool rows_are_rougher(const Values& v, const DyadicCell& cell) {
 }
 
 // How many known coordinates the views spread over.
-std::size_t axes_of(std::span<const View> views) { return views.size() > views_per_axis ? 2 : 1; }
+std::size_t axes_of(std::span<const View> views) {
+  std::size_t axes = 1;
+  for (std::size_t count = views_per_axis; count < views.size(); count *= views_per_axis) ++axes;
+  return axes;
+}
 
 // The mean over the groups of views along an axis of each group's largest value.
 template <class Value>
@@ -184,7 +188,7 @@ void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {
   leaf.slope_x = line.slope_x, leaf.slope_y = line.slope_y;
   const std::size_t axes = axes_of(views);
   float square = 0, difference = 0;
-  Known steady{};  // the square that is left where slabs are thin along a coordinate
+  Shares steady{};  // the square that is left where slabs are thin along a coordinate
   for (int j = 0; j < grid_size; ++j) {
     for (int i = 0; i < grid_size; ++i) {
       const float w = lobatto_weights[j] * lobatto_weights[i] / grid_shape(leaf.slope_x, leaf.slope_y, j, i);

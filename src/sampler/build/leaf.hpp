@@ -41,11 +41,11 @@ inline constexpr float lobatto_weights[grid_size] = {1.f / 12, 5.f / 12, 5.f / 1
 
 // A viewer of a slab at which its leaves are looked at; the weights of all views sum to 1.
 struct View {
-  Known place;                       // shares of the slab's box, in [0, 1]
-  std::array<std::size_t, 2> group;  // which of the places along each known coordinate it is at
+  Shares place;
+  std::array<std::size_t, known_slots> group;  // which of the places along each axis it is at
   float weight;
   Known known;
-  Direction wo;
+  Viewer viewer;
   float albedo;
 };
 
@@ -53,7 +53,7 @@ inline constexpr std::size_t views_per_axis = 3;  // Simpson's
 
 // Where a point of the grid lies: shares of slab and leaf, in [0, 1].
 struct GridPlace {
-  Known known;
+  Shares known;
   float x, y;
 };
 GridPlace grid_place(std::span<const View> views, std::size_t index);
@@ -64,8 +64,8 @@ using Grid = std::span<const FieldValue>;
 struct Leaf {
   DyadicCell cell;
   float ideal = 0, cost = 0;
-  Known known_cost{};  // the part of the cost that slabs narrower along a known coordinate save
-  float height = 0;    // bound of T / (albedo q), or its root mean square
+  Shares known_cost{};  // the part of the cost that slabs narrower along an axis save
+  float height = 0;     // bound of T / (albedo q), or its root mean square
   bool split_x = false;
   std::uint16_t peak = 0;          // exact: index in the grid of the largest T / (albedo q)
   float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)
@@ -74,7 +74,7 @@ struct Leaf {
   float seen = 0;
   Known seen_by{};
   // Along which known coordinates a landmark moves through the leaf faster than the slab's views can follow.
-  std::array<bool, 2> crossed{};
+  std::array<bool, known_slots> crossed{};
   Vec2<float> seen_at{};
 
   // Remembers the largest T / albedo.

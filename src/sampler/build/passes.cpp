@@ -14,10 +14,12 @@ std::vector<Slab> first_slabs(const Survey& survey) {
   const Field& field = survey.field;
   const std::vector<float> thetas = theta_borders(field, survey.jumps);
   std::vector<Slab> slabs;
+  KnownBox box = field.whole();
   for (std::size_t i = 0; i + 1 < thetas.size(); ++i) {
+    box.lo[0] = thetas[i], box.hi[0] = thetas[i + 1];
     const std::vector<float> phis = azimuth_borders(field, survey.jumps, thetas[i], thetas[i + 1]);
     for (std::size_t k = 0; k + 1 < phis.size(); ++k) {
-      const KnownBox box{{thetas[i], phis[k]}, {thetas[i + 1], phis[k + 1]}, field.axes()};
+      box.lo[1] = phis[k], box.hi[1] = phis[k + 1];  // of isotropic functions no axis
       slabs.push_back(make_slab(box, survey.albedo, field));
     }
   }

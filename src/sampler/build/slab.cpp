@@ -8,44 +8,56 @@ namespace reflectree::detail {
 Slab make_slab(const KnownBox& box, const AlbedoTable& table, const Field& field) {
   Slab slab{box, {}, {}, {Node{}}};
   // Just inside the borders, where a neighbour's kink does not reach.
-  const auto viewer = [&](Known share) {
+  const auto viewer = [&](Shares share) {
     for (float& t : share) t = clamp(t, 1e-4f, 1 - 1e-4f);
     return viewer_at(box.at(share));
   };
-  const auto albedo = [&](Direction wo) {
-    return field.frame.isotropic() ? albedo_at(table, wo.z) : albedo_at(table, wo.z, azimuth_of(wo));
-  };
+  const auto axes = std::size_t(box.axes);
   constexpr float weights[views_per_axis] = {1.f / 6, 4.f / 6, 1.f / 6};
-  const std::size_t across = box.axes > 1 ? views_per_axis : 1;
-  for (std::size_t k = 0; k < views_per_axis * across; ++k) {
-    const std::array<std::size_t, 2> group{k % views_per_axis, k / views_per_axis};
-    const Known place{0.5f * float(group[0]), 0.5f * float(group[1])};
-    const float weight = weights[group[0]] * (across > 1 ? weights[group[1]] : 1);
-    const Direction wo = viewer(place);
-    slab.views.push_back({place, group, weight, box.at(place), wo, albedo(wo)});
-  }
-  // The landmarks' way through the slab.
-  const auto travel = [&](std::size_t i, const std::vector<Landmark>& first,
-                          const std::vector<Landmark>& last) {
-    if (i >= first.size() || i >= last.size()) return 0.f;
-    return max(abs(first[i].p.x - last[i].p.x), abs(first[i].p.y - last[i].p.y));
-  };
-  const float middle = across > 1 ? 0.5f : 0.f;
-  const std::vector<Landmark> low = field.landmarks(viewer({0, middle})),
-                              high = field.landmarks(viewer({1, middle}));
-  std::vector<Landmark> left, right;
-  if (across > 1) left = field.landmarks(viewer({0.5f, 0})), right = field.landmarks(viewer({0.5f, 1}));
-  const int steps = across > 1 ? 4 : 12, rows = across > 1 ? 4 : 0;
-  for (int row = 0; row <= rows; ++row) {
-    for (int step = 0; step <= steps; ++step) {
-      const Known share{float(step) / float(steps), rows ? float(row) / float(rows) : 0.f};
-      const Direction wo = viewer(share);
-      const std::vector<Landmark> here = field.landmarks(wo);
-      for (std::size_t i = 0; i < here.size(); ++i) {
-        slab.marks.push_back(
-            {{wo, here[i].p}, albedo(wo), box.at(share), {travel(i, low, high), travel(i, left, right)}});
-      }
+  std::size_t views = 1;
+  for (std::size_t a = 0; a < axes; ++a) views *= views_per_axis;
+  for (std::size_t k = 0; k < views; ++k) {
+    std::array<std::size_t, known_slots> group{};
+    Shares place{};
+    float weight = 1;
+    for (std::size_t a = 0, rest = k; a < axes; ++a, rest /= views_per_axis) {
+      group[a] = rest % views_per_axis, place[a] = 0.5f * float(group[a]);
+      weight *= weights[group[a]];
     }
+    const Viewer at = viewer(place);
+    slab.views.push_back({place, group, weight, box.at(place), at, albedo_of(field, table, at)});
+  }
+  // The landmarks' way through the slab, along each axis.
+  Shares middle{};
+  for (std::size_t a = 1; a < axes; ++a) middle[a] = 0.5f;
+  std::array<std::vector<Landmark>, known_slots> low, high;
+  for (std::size_t a = 0; a < axes; ++a) {
+    Shares share = middle;
+    if (axes > 1) share[0] = 0.5f;
+    share[a] = 0, low[a] = field.landmarks(viewer(share));
+    share[a] = 1, high[a] = field.landmarks(viewer(share));
+  }
+  const auto travel = [&](std::size_t i) {
+    Shares way{};
+    for (std::size_t a = 0; a < axes; ++a) {
+      if (i >= low[a].size() || i >= high[a].size()) continue;
+      way[a] = max(abs(low[a][i].p.x - high[a][i].p.x), abs(low[a][i].p.y - high[a][i].p.y));
+    }
+    return way;
+  };
+  constexpr std::array<std::size_t, known_slots> marks_per_axis{13, 5, 3, 3};
+  const std::size_t steps = marks_per_axis[axes - 1];
+  std::size_t marks = 1;
+  for (std::size_t a = 0; a < axes; ++a) marks *= steps;
+  for (std::size_t k = 0; k < marks; ++k) {
+    Shares share{};
+    for (std::size_t a = 0, rest = k; a < axes; ++a, rest /= steps)
+      share[a] = float(rest % steps) / float(steps - 1);
+    const Viewer at = viewer(share);
+    const std::vector<Landmark> here = field.landmarks(at);
+    for (std::size_t i = 0; i < here.size(); ++i)
+      slab.marks.push_back(
+          {field_point(at, here[i].p), albedo_of(field, table, at), box.at(share), travel(i)});
   }
   return slab;
 }

@@ -24,7 +24,7 @@ struct Slab {
     FieldPoint point;
     float albedo;
     Known known;
-    Known travel;  // how far it moves along the slab, by each known coordinate
+    Shares travel;  // how far it moves along the slab, along each axis
   };
   std::vector<Mark> marks;
   std::vector<Node> nodes;  // nodes[0] is the root

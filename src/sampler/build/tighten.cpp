@@ -17,7 +17,7 @@ namespace {
 constexpr float margin = 1e-3f;
 
 // Where a climber stands: shares of its slab, along each known coordinate, then of its leaf; in [0, 1].
-using Place = std::array<float, 4>;
+using Place = std::array<float, known_slots + 2>;
 
 struct Climber {
   Slab* slab;
@@ -29,7 +29,7 @@ struct Climber {
 };
 
 Known known_at(const Climber& c, const Place& at) {
-  Known share{};
+  Shares share{};
   std::copy_n(at.begin(), c.slab->box.axes, share.begin());
   return c.slab->box.at(share);
 }
@@ -38,13 +38,16 @@ Vec2<float> point_at(const Climber& c, const Place& at) {
   return {c.box.x0 + c.box.width * at[x], c.box.y0 + c.box.height * at[x + 1]};
 }
 FieldPoint point_of(const Climber& c, const Place& at) {
-  return {viewer_at(known_at(c, at)), point_at(c, at)};
+  return field_point(viewer_at(known_at(c, at)), point_at(c, at));
 }
 
+// What T is divided by for a viewer; 0 where it is not to be judged.
+float normaliser(const Survey& survey, const Viewer& viewer) {
+  return survey.at_jump(viewer.wo) ? 0.f : survey.albedo_at(viewer);
+}
 // T / (albedo q): what the leaf's bound must reach at p.
-float ratio_of(const Survey& survey, const Leaf& leaf, const Box& box, const FieldPoint& p, float v) {
-  const float a = survey.albedo_at(p.wo);
-  return a > 0 && !survey.at_jump(p.wo) ? v / (a * shape(leaf, box, p.p)) : 0.f;
+float ratio_of(float albedo, const Leaf& leaf, const Box& box, Vec2<float> p, float v) {
+  return albedo > 0 ? v / (albedo * shape(leaf, box, p)) : 0.f;
 }
 
 // Coordinate steps up and down each axis, all climbers in one batch; steps shrink where none helps.
@@ -59,19 +62,30 @@ void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
     out[k / 2] = clamp(c.at[k / 2] + (k % 2 ? c.step[k / 2] : -c.step[k / 2]), 1e-5f, 1 - 1e-5f);
     return out;
   };
+  // Steps over the leaf alone; the last neighbour is one.
+  const auto keeps_viewer = [](const Climber& c, std::size_t k) { return int(k / 2) >= c.slab->box.axes; };
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < climbers.size(); ++i) {
-      for (std::size_t k = 0; k < neighbours; ++k)
-        points[i * neighbours + k] = point_of(climbers[i], moved(climbers[i], k));
-    }
+    survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Climber& c = climbers[i];
+        const Viewer here = viewer_at(known_at(c, c.at));
+        for (std::size_t k = 0; k < neighbours; ++k) {
+          const Place to = moved(c, k);
+          const Viewer viewer = keeps_viewer(c, k) ? here : viewer_at(known_at(c, to));
+          points[i * neighbours + k] = field_point(viewer, point_at(c, to));
+        }
+      }
+    });
     survey.eval(points, values);
     survey.host.parallel_for(climbers.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Climber& c = climbers[i];
-        std::array<float, 8> r{};
+        std::array<float, 2 * (known_slots + 2)> r{};
+        const float here = normaliser(survey, points[(i + 1) * neighbours - 1].viewer());
         for (std::size_t k = 0; k < neighbours; ++k) {
           const std::size_t j = i * neighbours + k;
-          r[k] = ratio_of(survey, *c.leaf, c.box, points[j], values[j].upper);
+          const float albedo = keeps_viewer(c, k) ? here : normaliser(survey, points[j].viewer());
+          r[k] = ratio_of(albedo, *c.leaf, c.box, points[j].p, values[j].upper);
         }
         // Along each axis move to the better side, if it is better than here; else come closer.
         const Climber before = c;
@@ -88,7 +102,7 @@ void climb(std::vector<Climber>& climbers, int rounds, const Survey& survey) {
 }
 
 Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float step, const Domain& domain) {
-  Climber c{&slab, &leaf, box_of(leaf.cell, domain), {}, {step, step, step, step}, value};
+  Climber c{&slab, &leaf, box_of(leaf.cell, domain), {}, {step, step, step, step, step, step}, value};
   std::copy_n(at.known.begin(), slab.box.axes, c.at.begin());
   c.at[std::size_t(slab.box.axes)] = at.x, c.at[std::size_t(slab.box.axes) + 1] = at.y;
   return c;
@@ -96,9 +110,6 @@ Climber start_at(Slab& slab, Leaf& leaf, const GridPlace& at, float value, float
 GridPlace place_in(const Slab& slab, const Box& box, const Known& known, Vec2<float> p) {
   return {slab.box.share_of(known), (p.x - box.x0) / box.width, (p.y - box.y0) / box.height};
 }
-// The known coordinates of a viewer.
-Known known_of(Direction wo, int axes) { return {theta_of_viewer(wo), axes > 1 ? azimuth_of(wo) : 0.f}; }
-
 void raise(const Climber& c, float bound) {
   const Vec2<float> p = point_at(c, c.at);
   c.leaf->note(c.value * shape(*c.leaf, c.box, p), known_at(c, c.at), p);
@@ -148,34 +159,43 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
   std::vector<FieldValue> values;
   std::vector<float> ratios;
   std::vector<ProbedLeaf> probed;
+  std::size_t total = 0;
   const auto flush = [&] {
-    values.resize(points.size()), ratios.resize(points.size());
+    points.resize(total), values.resize(total), ratios.resize(total);
+    survey.host.parallel_for(probed.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const ProbedLeaf& p = probed[k];
+        Pcg32 u(seed + p.slab, p.node);
+        const Climber c = start_at(slabs[p.slab], slabs[p.slab].nodes[p.node].leaf, {}, 0, 0, field.domain);
+        for (std::size_t i = p.first; i < p.first + p.count; ++i) {
+          Place at{};
+          for (int axis = 0; axis < c.axes(); ++axis) at[std::size_t(axis)] = to_unit_float(u());
+          points[i] = point_of(c, at);
+        }
+      }
+    });
     survey.eval(points, values);
     survey.host.parallel_for(probed.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const Leaf& leaf = slabs[probed[k].slab].nodes[probed[k].node].leaf;
         const Box box = box_of(leaf.cell, field.domain);
         for (std::size_t i = probed[k].first; i < probed[k].first + probed[k].count; ++i) {
-          ratios[i] = ratio_of(survey, leaf, box, points[i], values[i].*image);
+          ratios[i] =
+              ratio_of(normaliser(survey, points[i].viewer()), leaf, box, points[i].p, values[i].*image);
         }
       }
     });
     for (const ProbedLeaf& p : probed) visit(p, points, ratios);
-    points.clear(), probed.clear();
+    total = 0;
+    probed.clear();
   };
   for (std::uint32_t s = 0; s < slabs.size(); ++s) {
     for (const std::uint32_t i : leaves_in_order(slabs[s])) {
       const std::size_t count = count_of(slabs[s], i);
       if (count == 0) continue;
-      Pcg32 u(seed + s, i);
-      const Climber c = start_at(slabs[s], slabs[s].nodes[i].leaf, {}, 0, 0, field.domain);
-      probed.push_back({s, i, points.size(), count});
-      for (std::size_t k = 0; k < count; ++k) {
-        Place at{};
-        for (int axis = 0; axis < c.axes(); ++axis) at[std::size_t(axis)] = to_unit_float(u());
-        points.push_back(point_of(c, at));
-      }
-      if (points.size() >= batch) flush();
+      probed.push_back({s, i, total, count});
+      total += count;
+      if (total >= batch) flush();
     }
   }
   flush();
@@ -215,7 +235,7 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
     if (survey.towers && worst > 8 * leaf.height) survey.towers->push_back(points[where]);
     found[t.slab] += double(area_share(leaf.cell)) * excess / double(t.count);
     const Box box = box_of(leaf.cell, field.domain);
-    const GridPlace at = place_in(slab, box, known_of(points[where].wo, slab.box.axes), points[where].p);
+    const GridPlace at = place_in(slab, box, known_of(points[where].viewer(), slab.box), points[where].p);
     climbers.push_back(start_at(slab, leaf, at, worst, 0.05f, field.domain));
   };
   probe_leaves(slabs, seed, &FieldValue::upper, survey, count, visit);
@@ -228,17 +248,17 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
 
 void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, const Survey& survey) {
   const Domain& domain = survey.field.domain;
-  const Partition partition = partition_of(slabs);
+  const KnownBox whole = survey.field.whole();
+  const Partition partition = partition_of(slabs, survey.field.parameters);
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const float albedo = survey.albedo_at(points[i].wo);
+    const float albedo = survey.albedo_at(points[i].viewer());
     if (!(albedo > 0)) continue;
-    const Known known{theta_of_viewer(points[i].wo), azimuth_of(points[i].wo)};
-    Slab& slab = slabs[find_slab(partition, known)];
+    Slab& slab = slabs[slab_index(partition, points[i].viewer(), whole)];
     Leaf& leaf = slab.nodes[leaf_at(slab, points[i].p, domain)].leaf;
     const float ratio = values[i].upper / albedo;
-    leaf.note(ratio, known_of(points[i].wo, slab.box.axes), points[i].p);
+    leaf.note(ratio, known_of(points[i].viewer(), slab.box), points[i].p);
     leaf.raise((1 + margin) * ratio / shape(leaf, box_of(leaf.cell, domain), points[i].p));
   }
 }
@@ -258,7 +278,7 @@ void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& s
       const float v = ratios[i] * shape(leaf, box, points[i].p);
       const double square = double(ratios[i]) * double(v);
       sum += square, sum2 += square * square;
-      if (v > leaf.seen) leaf.note(v, known_of(points[i].wo, slabs[t.slab].box.axes), points[i].p);
+      if (v > leaf.seen) leaf.note(v, known_of(points[i].viewer(), slabs[t.slab].box), points[i].p);
     }
     const double n = double(t.count), square = sum / n;
     const double error = std::sqrt(max(sum2 / n - square * square, 0.) / n);

@@ -21,6 +21,8 @@ const char* name_of(DomainKind kind) {
       return "normal_vector";
     case DomainKind::slope_star:
       return "slope_star";
+    case DomainKind::scaled_star:
+      return "scaled_star";
   }
   return "unknown";
 }

@@ -3,6 +3,7 @@
 // parser, the printer, the registry and the documentation all read it, so that they cannot disagree.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -85,7 +86,9 @@ inline bool sum_above_one(Rgb a, Rgb b) {
 struct NamedValue {
   std::string_view name;
   Rgb value;
-  bool quiet = false;  // left out where it is 0
+  bool quiet = false;                                  // left out where it is 0
+  float up_to = std::numeric_limits<float>::lowest();  // above `value`: a range, NAME=value..up_to
+  bool joined = false;                                 // with its twin of a pair: they vary together
 };
 std::string model_text(std::string_view model, std::span<const NamedValue> values);
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/brdf/material/description.hpp"
 
 namespace reflectree {
@@ -21,6 +21,12 @@ struct ParameterInfo {
   bool quiet = false;  // left out of the canonical text where it is 0
 };
 
+// Values of a model, one after the other, that follow one parameter of a family.
+struct VariedValues {
+  std::size_t first = 0, count = 1;
+  std::size_t parameter = 0;
+};
+
 struct ModelInfo {
   std::string_view name;
   ModelClass model_class;
@@ -30,6 +36,9 @@ struct ModelInfo {
   const char* (*fault)(std::span<const Rgb> values);
   // The model with one value per parameter, in the order of `parameters`.
   AnyBrdf (*make)(std::span<const Rgb> values);
+  // The family in which some of the values follow parameters of it; `ranges` and `name` are the family's.
+  AnyFamily (*make_family)(std::span<const Rgb> values, std::span<const VariedValues> varied,
+                           const std::vector<ParameterRange>& ranges, const std::string& name);
 };
 
 // In the order in which `list` shows them.

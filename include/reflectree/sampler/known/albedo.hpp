@@ -9,27 +9,37 @@
 
 #include "reflectree/math/scalar.hpp"
 #include "reflectree/sampler/known/cosine_lookup.hpp"
+#include "reflectree/sampler/known/parameter.hpp"
 
 namespace reflectree {
+
+// Equidistant places along the coordinate of a parameter, both ends included.
+struct AlbedoAxis {
+  float lo = 0, hi = 1;
+  std::uint32_t rows = 4;
+  friend bool operator==(const AlbedoAxis&, const AlbedoAxis&) = default;
+};
 
 // Piecewise linear in cos_theta_o. Of anisotropic functions rows at azimuths of the viewer, in segments: in
 // each the rows are equidistant, and between two of them lies the cubic through four (where there are as
 // many). The next segment begins where one ends, with a row of its own, so that what leaps there has both its
-// sides.
+// sides. Of families cubic in the coordinate of each parameter, too.
 struct AlbedoTable {
   std::vector<float> cos_theta_o;  // ascending, from the smallest served to 1
-  std::vector<float> albedo;       // [phi_o][cos_theta_o]
+  std::vector<float> albedo;       // [second parameter][first parameter][phi_o][cos_theta_o]
   // Stated bound on the error of quadrature and interpolation up to 89.9 degrees; beyond, ten times as large.
   float relative_error = 0;
   // From 0 to azimuth_span, radians; empty for isotropic functions.
   std::vector<float> phi_o = {};
-  bool even = false;  // of a single segment: mirrored about both ends; else periodic
+  bool even = false;                        // of a single segment: mirrored about both ends; else periodic
+  std::vector<AlbedoAxis> parameters = {};  // of families
   friend bool operator==(const AlbedoTable&, const AlbedoTable&) = default;
 };
 
 // a(wo) by linear interpolation; 0 outside the table.
 float albedo_at(const AlbedoTable& table, float cos_theta_o);
 float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o);
+float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o, const Coordinates& at);
 // Throws Error unless the nodes ascend over the hemisphere and every value is a number that is not negative.
 void validate(const AlbedoTable& table);
 
@@ -59,6 +69,8 @@ struct PackedAlbedo {
   std::vector<AlbedoPiece> pieces;
   std::size_t row = 0;            // pieces of one azimuth
   std::vector<Segment> segments;  // empty for isotropic functions
+  // Of families, whose pieces have a row more at both ends of each of these, too.
+  std::vector<AlbedoAxis> parameters = {};
 
   float at(float cos_theta_o) const {
     const AlbedoPiece& piece = pieces[lookup(cos_theta_o)];
@@ -77,6 +89,8 @@ struct PackedAlbedo {
     return max(sum, 0.f);
   }
   const Segment& segment_at(float phi_o) const;
+  // Of families.
+  float at(float cos_theta_o, float phi_o, const Coordinates& at) const;
   std::size_t bytes() const {
     return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece) + segments.size() * sizeof(Segment);
   }

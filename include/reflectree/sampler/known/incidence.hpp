@@ -16,6 +16,9 @@ struct Incidence {
   float albedo;            // a(wo) of the target
   float phi_o = 0;         // of anisotropic functions: the azimuth in the viewer's frame, folded
   float side = 0;          // its sign bit: the frame is mirrored, y turned around, before it is turned
+  // Of families: all known coordinates but theta_o, in the order of the partition, and the domain's widths.
+  std::array<float, 1 + max_parameters> known_beyond;
+  float scale_x, scale_y;
 };
 
 // What is known of a sampler's viewers.
@@ -24,6 +27,8 @@ struct PackedViewer {
   ViewerFrame frame = {};
   float cos_axis = 1, sin_axis = 0;
   bool turns = true;  // the domain lives in the frame where wo has no y, rather than in the viewer's frame
+  std::vector<KnownParameter> parameters = {};  // of families
+  ScaleLaw law = {};
 };
 
 // How far |wo|^2 may be from 1: what a renderer's rounding leaves.
@@ -53,6 +58,9 @@ REFLECTREE_INLINE bool find_incidence(const PackedViewer& viewer, Direction wo, 
   }
   return out.albedo > 0;
 }
+
+// Of a family; parameters outside of their ranges are "no sample", too.
+bool find_incidence(const PackedViewer& viewer, Direction wo, const Parameters& values, Incidence& out);
 
 REFLECTREE_INLINE Direction from_incidence(const Incidence& in, Direction w) {
   return turn({w.x, flip_sign(w.y, in.side), w.z}, in.cos_phi, in.sin_phi);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A partition of the known coordinates into slabs: a binary tree over a short list of named coordinates
-// (theta_o; of anisotropic functions also phi_o).
+// (theta_o; of anisotropic functions also phi_o; of families also one or two parameters).
 #pragma once
 
 #include <cstdint>

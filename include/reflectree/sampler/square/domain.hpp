@@ -13,6 +13,8 @@
 //   normal_vector   the same about the normal: what stands there, however sharp
 //   slope_star      half vectors by their slopes in the frame of the surface, stretched by s along x and 1/s
 //                   along y: the elliptic lobes of anisotropic microfacets are round and stay put for every wo
+//   scaled_star     the same for families, stretched by two widths that follow the parameters: lobes of every
+//                   width fill the same part of the square
 #pragma once
 
 #include <cstdint>
@@ -29,19 +31,22 @@ enum class DomainKind : std::uint8_t {
   stretched,
   mirror_vector,
   normal_vector,
-  slope_star
+  slope_star,
+  scaled_star
 };
 
 struct Domain {
   DomainKind kind = DomainKind::half_vector;
   Symmetry symmetry = Symmetry::mirror;
-  float exponent = 0;  // a, for DomainKind::stretched
-  float stretch = 1;   // s, for DomainKind::slope_star
+  float exponent = 0;              // a, for DomainKind::stretched
+  float stretch = 1;               // s, for DomainKind::slope_star
+  float scale_x = 1, scale_y = 1;  // for DomainKind::scaled_star: of one member
   // Whether it is a map in the frame of the surface, so that wo may have a y; all others of half vectors and
   // about directions need wo in the x-z plane.
   constexpr bool follows_surface() const {
-    return kind == DomainKind::slope_star || kind == DomainKind::projected_disk ||
-           kind == DomainKind::equal_area || kind == DomainKind::stretched;
+    return kind == DomainKind::slope_star || kind == DomainKind::scaled_star ||
+           kind == DomainKind::projected_disk || kind == DomainKind::equal_area ||
+           kind == DomainKind::stretched;
   }
   // Whether the square is half of one, y in [0, 1].
   constexpr bool half() const { return symmetry == Symmetry::mirror; }

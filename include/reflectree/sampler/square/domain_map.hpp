@@ -160,6 +160,30 @@ REFLECTREE_INLINE DomainPointT<T> lift_slope_star(Vec3<T> wo, T stretch, Vec2<T>
   const Vec3<T> wh{tau.x * cos_theta_h, tau.y * cos_theta_h, cos_theta_h};
   return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
 }
+// With S = diag(a, b), for families: d(slopes) = a b r dr dphi.
+template <class T>
+REFLECTREE_INLINE SlopeStar<T> scaled_star(Vec3<T> wo, Vec2<T> u, Vec2<T> scale) {
+  const Vec2<T> along{scale.x * u.x, scale.y * u.y};
+  const T q = along.x * along.x + along.y * along.y, b = along.x * wo.x + along.y * wo.y;
+  const T l = sqrt(b * b + q * sqr(wo.z)) + abs(b);
+  return {along, by_sign(b, l, wo.z), by_sign(b, q * wo.z, l)};
+}
+template <class T>
+REFLECTREE_INLINE DomainPointT<T> lift_scaled_star(Vec3<T> wo, Vec2<T> scale, Vec2<T> azimuth, T y) {
+  y = max(y, T(1e-12f));
+  const SlopeStar<T> star = scaled_star(wo, azimuth, scale);
+  const T d = star.p / (star.p + (star.c - star.p) * y), r = y * d;
+  const Vec2<T> tau{r * star.along.x, r * star.along.y};
+  const T nn = T(1) + tau.x * tau.x + tau.y * tau.y;
+  const T wo_n = max(wo.x * tau.x + wo.y * tau.y + wo.z, T(min_cos_theta_i));
+  const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
+  const Vec3<T> wi{twice * tau.x - wo.x, twice * tau.y - wo.y, max(twice - wo.z, T(min_cos_theta_i))};
+  const T det = scale.x * scale.y;
+  const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (det * r * d * d);
+  const T cos_theta_h = sqrt(cos2_theta_h);
+  const Vec3<T> wh{tau.x * cos_theta_h, tau.y * cos_theta_h, cos_theta_h};
+  return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
+}
 // The azimuth's direction u in the square, and |y|.
 struct LoweredSlopes {
   Vec2<float> u;
@@ -173,6 +197,17 @@ REFLECTREE_INLINE LoweredSlopes lower_slope_star(Direction wo, Direction wi, flo
   const float r = max(sqrt(v.x * v.x + v.y * v.y), 1e-7f);
   const Vec2<float> u = v.x == 0 && v.y == 0 ? Vec2<float>{1, 0} : Vec2<float>{v.x / r, v.y / r};
   const SlopeStar<float> star = slope_star(wo, u, stretch);
+  return {u, star.p * r / (star.p - (star.c - star.p) * r)};
+}
+
+REFLECTREE_INLINE LoweredSlopes lower_scaled_star(Direction wo, Direction wi, Vec2<float> scale) {
+  const Direction wh = normalize(sum_of_directions(wo, wi));
+  const float z = max(wh.z, 1e-12f);
+  // No less than a rounding of wi, as above.
+  const Vec2<float> v{wh.x / (z * scale.x), wh.y / (z * scale.y)};
+  const float r = max(sqrt(v.x * v.x + v.y * v.y), 1e-7f / max(scale.x, scale.y));
+  const Vec2<float> u = v.x == 0 && v.y == 0 ? Vec2<float>{1, 0} : Vec2<float>{v.x / r, v.y / r};
+  const SlopeStar<float> star = scaled_star(wo, u, scale);
   return {u, star.p * r / (star.p - (star.c - star.p) * r)};
 }
 
@@ -202,6 +237,8 @@ REFLECTREE_INLINE DomainPointT<T> lift_point(const Domain& domain, Vec3<T> wo, V
       return lift_mirror_vector(wo, Vec2<T>{T(0), T(1)}, azimuth, y);
     case DomainKind::slope_star:
       return lift_slope_star(wo, T(domain.stretch), azimuth, y);
+    case DomainKind::scaled_star:
+      return lift_scaled_star(wo, Vec2<T>{T(domain.scale_x), T(domain.scale_y)}, azimuth, y);
     case DomainKind::projected_disk: {
       const T r = sqrt(y), z = max(sqrt(T(1) - y), T(min_cos_theta_i));
       return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}), T(pi)};
@@ -253,6 +290,9 @@ REFLECTREE_INLINE auto with_known_kind(Domain domain, Body&& body) {
     case DomainKind::slope_star:
       domain.kind = DomainKind::slope_star;
       return body(domain);
+    case DomainKind::scaled_star:
+      domain.kind = DomainKind::scaled_star;
+      return body(domain);
     default:
       domain.kind = DomainKind::stretched;
       return body(domain);
@@ -281,6 +321,12 @@ REFLECTREE_INLINE Vec2<float> lower(const Domain& domain, Direction wo, Directio
     }
     case DomainKind::slope_star: {
       const auto at = detail::lower_slope_star(wo, wi, domain.stretch);
+      turned = {at.u.x, at.u.y, 0};
+      y = at.y;
+      break;
+    }
+    case DomainKind::scaled_star: {
+      const auto at = detail::lower_scaled_star(wo, wi, {domain.scale_x, domain.scale_y});
       turned = {at.u.x, at.u.y, 0};
       y = at.y;
       break;
