@@ -28,7 +28,7 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-COPIED = ["CMakeLists.txt", "apps", "bench", "cmake", "examples", "include", "src", "tests", "tools", "LICENSE", "docs"]
+COPIED = sorted(p.name for p in ROOT.iterdir() if not p.name.startswith((".", "build")))
 # In the order in which they are asked: the quickest to build first.
 TEST_PROGRAMS = ["test_sampler_data", "test_sampler_build", "test_sampler_sampling", "test_sampler_faults",
                  "test_simd_batch", "test_verify_ways"]

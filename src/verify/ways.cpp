@@ -45,4 +45,7 @@ std::vector<Direction> strangers(std::size_t n, Pcg32& u) {
 }
 
 }  // namespace detail
+template Suspect suspect(const Sampler<AnyBrdf>&, AnyBrdf, const SamplerData*);
+template Suspect suspect(const Sampler<FamilyMember<AnyFamily>>&, AnyBrdf, const SamplerData*);
+
 }  // namespace reflectree

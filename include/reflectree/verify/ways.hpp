@@ -228,4 +228,8 @@ Suspect suspect(const Sampler<F>& sampler, AnyBrdf f, const SamplerData* data = 
   return s;
 }
 
+// Of what is chosen at run time: compiled once, in the library, for it takes long.
+extern template Suspect suspect(const Sampler<AnyBrdf>&, AnyBrdf, const SamplerData*);
+extern template Suspect suspect(const Sampler<FamilyMember<AnyFamily>>&, AnyBrdf, const SamplerData*);
+
 }  // namespace reflectree
