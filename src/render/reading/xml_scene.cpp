@@ -28,8 +28,7 @@ class SceneReader {
       seen = seen || first_sensor;
       xml_.attempt([&] { return read_part(n, first_sensor), true; }, false);
     }
-    if (volumes_ && materials_.lets_pass() &&
-        !(scene_.point_lights.empty() && scene_.spot_lights.empty() && scene_.directional_lights.empty()))
+    if (volumes_ && materials_.lets_pass() && shines_from_a_point())
       xml_.attempt(
           [&]() -> bool {
             xml_.fail(volumes_, "lamps of a point or a direction do not shine through masks and panes here",
@@ -51,10 +50,17 @@ class SceneReader {
     if (!seen) throw Error("no <sensor>", path, "add a perspective sensor");
     if (const std::string words = xml_.idle_words(); !words.empty())
       scene_.notes.push_back(path + ": " + words);
+    if (light_samples_ > 1 && shines_from_a_point())
+      scene_.notes.push_back(path + ": lamps of a point or a direction count once here, and in Mitsuba " +
+                             std::to_string(light_samples_) + " times, once for each of their samples");
     return std::move(scene_);
   }
 
  private:
+  bool shines_from_a_point() const {
+    return !(scene_.point_lights.empty() && scene_.spot_lights.empty() && scene_.directional_lights.empty());
+  }
+
   // The first sensor takes the picture, as in Mitsuba.
   void read_part(Node n, bool first_sensor) {
     const std::string_view tag = n.name();
@@ -116,6 +122,7 @@ class SceneReader {
               of_surface = xml_.integer(n, "bsdf_samples", both);
     if (!(of_lights >= 0 && of_surface >= 0 && of_lights + of_surface > 0))
       xml_.fail(n, "numbers of samples that are negative or all 0", "write 1 or more");
+    light_samples_ = of_lights;
     if (own || lights || XmlReader::named(n, "shading_samples")) t.split = std::max(of_lights, of_surface);
     if (of_lights == 0) t.technique = Technique::surface;
     if (of_surface == 0) t.technique = Technique::light, lights_alone_ = own;
@@ -215,6 +222,7 @@ class SceneReader {
   ShapeReader shapes_;
   Node volumes_;       // an integrator that looks for volumes
   Node lights_alone_;  // bsdf_samples, if it is 0
+  int light_samples_ = 1;
 };
 
 }  // namespace
