@@ -16,7 +16,7 @@ struct Options {
   std::vector<std::string> defines;
   render::SceneOptions reading;
   render::RenderOptions how;
-  std::string technique = "balance", integrator, points;
+  std::string technique, integrator, points;
   int split = 0, photons = 0;
   float radius = 0, alpha = 0;
   bool no_gather = false;
@@ -71,7 +71,8 @@ int run_render(const Context& context, Options& o) {
   const std::string sums = o.output + ".sums";
   render::Film film;
   if (o.resume) film = render::load_film(sums);
-  o.how.seed = context.seed, o.how.technique = technique_of(o.technique);
+  o.how.seed = context.seed;
+  if (!o.technique.empty()) o.how.technique = technique_of(o.technique);
   std::optional<PhaseClock> clock;
   if (o.profile) clock.emplace();
   const int before = film.samples;
@@ -119,9 +120,9 @@ void add_render(CLI::App& app, Context& context, Run& run) {
       ->add_option(
           "--technique", o->technique,
           "How lights are found: balance or power (both ways, by that heuristic), light, brdf; "
-          "with --integrator direct, also resampled: brdf directions resampled by the light they see")
+          "with --integrator direct, also resampled: brdf directions resampled by the light they see; "
+          "else the scene's, which is balance if it says nothing")
       ->check(CLI::IsMember({"balance", "power", "light", "brdf", "resampled"}).description(""))
-      ->capture_default_str()
       ->type_name("NAME");
   command->add_option("--integrator", o->integrator, "path, direct, recursive or photons; else the scene's")
       ->check(CLI::IsMember({"path", "direct", "recursive", "photons"}).description(""))

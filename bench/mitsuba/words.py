@@ -51,6 +51,8 @@ class Mitsuba:
         answer = json.loads(line)
         if "error" in answer:
             return {"error": answer["error"]}
+        if not all(r for p in answer["pictures"] for c in p for r in c or [[]]):
+            return {"error": "a picture without pixels"}
         if not all(math.isfinite(v) for p in answer["pictures"] for c in p for r in c for v in r):
             return {"error": "not finite"}
         runs = [[m for m, _ in numbers_of(p)] for p in answer["pictures"]]

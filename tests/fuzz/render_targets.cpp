@@ -234,7 +234,20 @@ std::vector<Bytes> scene_seeds() {
 <shape type="cylinder"><emitter type="area"><texture type="checkerboard" name="radiance"/></emitter></shape>)"),
       with(
           R"(<shape type="sphere"><bsdf type="reflectree"><string name="material" value="lambert:rho=0.5"/></bsdf>
-</shape>)")};
+</shape>)"),
+      as_bytes(R"(<scene version="3.0.0"><integrator type="direct"><integer name="emitter_samples" value="0"/>
+<integer name="bsdf_samples" value="2"/></integrator><sampler type="independent" id="s"/><rfilter type="box" id="r"/>
+<film type="hdrfilm" id="f"><integer name="width" value="9"/><integer name="height" value="7"/><ref id="r"/>
+<integer name="crop_offset_x" value="2"/><integer name="crop_offset_y" value="1"/><integer name="crop_width" value="4"/>
+<integer name="crop_height" value="3"/></film><sensor type="thinlens"><float name="aperture_radius" value="0.2"/>
+<float name="focus_distance" value="3"/><float name="fov" value="50"/><ref id="s"/><ref id="f"/></sensor>
+<emitter type="projector"><rgb name="irradiance" value="1, 2, 3"/><float name="scale" value="2"/></emitter>
+<shape type="sphere"><point name="center" value="0, 0, 4"/><bsdf type="diffuse"><texture type="rawconstant"
+name="reflectance"><vector name="value" value="0.2, 0.4, 0.6"/></texture></bsdf></shape></scene>)"),
+      as_bytes(
+          R"(<scene version="3.0.0"><sensor type="orthographic"><transform name="to_world"><scale x="2" y="1.5"/>
+<translate z="-3"/></transform><float name="near_clip" value="0.5"/><film type="hdrfilm"/></sensor>
+<shape type="cube"/><emitter type="constant"/></scene>)")};
 }
 
 }  // namespace

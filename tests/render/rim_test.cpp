@@ -103,6 +103,21 @@ TEST(Film, OfAnotherSceneOrOtherOptionsIsRefused) {
   EXPECT_FALSE(goes_on(split, {.samples = 2}));
 }
 
+// What looks otherwise in Mitsuba is said.
+TEST(Direct, LampsOfAPointCountOnceAndTheReaderSaysSo) {
+  const auto notes = [](const std::string& samples, const std::string& lamp) {
+    const std::string film = R"(<sensor type="perspective"><film type="hdrfilm"/></sensor>)";
+    return parse_scene("<scene><integrator type=\"direct\"><integer name=\"emitter_samples\" value=\"" +
+                           samples + "\"/></integrator>" + film + "<emitter type=\"" + lamp + "\"/></scene>",
+                       "lamps.xml")
+        .notes;
+  };
+  ASSERT_EQ(notes("4", "point").size(), 1U);
+  EXPECT_NE(notes("4", "point").front().find("in Mitsuba 4 times"), std::string::npos);
+  EXPECT_TRUE(notes("1", "point").empty());
+  EXPECT_TRUE(notes("4", "constant").empty());
+}
+
 TEST(Materials, MetalsHaveNamesAndLightsAreBlack) {
   const auto first = [](const std::string& bsdf) {
     return parse_scene(scene_of("<shape type=\"sphere\">" + bsdf + "</shape>"), "ball.xml").surfaces.front();

@@ -4,6 +4,7 @@ import hashlib
 import json
 import pathlib
 
+import rows_cameras
 import rows_files
 import rows_more
 import rows_numbers
@@ -11,7 +12,8 @@ import rows_pixels
 import rows_shapes
 import rows_tangents
 
-ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS, *rows_tangents.ROWS, *rows_files.ROWS, *rows_more.ROWS]
+ROWS = [*rows_pixels.ROWS, *rows_shapes.ROWS, *rows_numbers.ROWS, *rows_tangents.ROWS, *rows_files.ROWS, *rows_more.ROWS,
+        *rows_cameras.ROWS]
 STORED = pathlib.Path(__file__).resolve().parent / "mitsuba.json"
 
 

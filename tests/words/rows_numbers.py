@@ -218,7 +218,6 @@ ROWS = [
         ("film: component_format, file_format, pixel_format", number("fov", "60"), "", {"film": number(
             "component_format", "float32", "string") + number("file_format", "openexr", "string") + number("pixel_format", "rgb", "string")}),
         ("film: pixel_format luminance", number("fov", "60"), "no pixel_format", {"film": "\n" + number("pixel_format", "luminance", "string")}),
-        ("film: crop_width", number("fov", "60"), "is not known", {"film": "\n" + number("crop_width", "4", "integer")}),
         ("film: compensate, banner", number("fov", "60"), "", {"film": number("compensate", "true", "boolean") + number("banner", "true", "boolean")}),
     )],
 ]

@@ -77,12 +77,15 @@ struct PointLight {
 };
 // From its place along the frame's n: full up to `beam`, then falling linearly to 0 at `cutoff`, both angles
 // in radians. `picture`, if any, is seen through by (x, y) / z.
+// A projector (tan_x, tan_y > 0) shines as a camera sees, which makes a wall before it evenly bright: its
+// picture fills a rectangle of that half width and height at distance 1, and `cutoff` leads to its corners.
 struct SpotLight {
   Point at;
   LocalFrame<float> frame;
   Rgb intensity;
   float beam = 0, cutoff = 0;
   std::optional<Texture> picture{};
+  float tan_x = 0, tan_y = 0;
   // Towards a direction in which light goes.
   Rgb towards(Direction direction) const;
 };
@@ -97,7 +100,17 @@ struct Camera {
   // What the picture shows lies so much to the right and below, in sizes of it.
   float shift_x = 0, shift_y = 0;
   float near = 0, far = std::numeric_limits<float>::infinity();  // along `forward`; the rest is not seen
+  // Orthographic: all rays go `forward`, from a plane that `left` and `up` span, which need not be unit
+  // vectors then, nor at right angles.
+  bool parallel = false;
+  float lens = 0, focus = 1;  // the lens's radius, and how far along `forward` the picture is sharp
 };
+// A ray of the camera, through (x, y) of the picture, both from 0 to 1, and a point of the unit disk on its lens.
+struct CameraLine {
+  Point origin;
+  Direction direction;
+};
+CameraLine line_through(const Camera& camera, float x, float y, Vec2<double> on_lens = {0, 0});
 
 // What weighs a camera ray by its place about a pixel's centre.
 struct Filter {
@@ -106,9 +119,18 @@ struct Filter {
   bool beyond = true;  // the film's border; otherwise nothing from there counts, as in Mitsuba by default
 };
 
+enum class Technique {
+  balance,   // lights and the surface's own directions, weighed by the balance heuristic
+  power,     // by the power heuristic, exponent 2
+  light,     // lights alone; deltas still find them by chance
+  surface,   // the surface's directions alone; point and directional lights stay dark
+  resampled  // the surface's directions, resampled by the light that they see: direct lighting alone
+};
+
 // How light is to be computed.
 struct Transport {
   enum class Method { path, direct, recursive, photons } method = Method::path;
+  Technique technique = Technique::balance;
   int split = 0;  // directions at a hit, photons' gathering and direct light included; 0: the method's own
   struct Photons {
     int count = 0;           // of light paths per pass; 0: as many as pixels

@@ -7,14 +7,6 @@
 
 namespace reflectree::render {
 
-enum class Technique {
-  balance,   // lights and the surface's own directions, weighed by the balance heuristic
-  power,     // by the power heuristic, exponent 2
-  light,     // lights alone; deltas still find them by chance
-  surface,   // the surface's directions alone; point and directional lights stay dark
-  resampled  // the surface's directions, resampled by the light that they see: direct lighting alone
-};
-
 // Whether next-event estimation may count a sample: where a surface's directions have no density, they are
 // left to find what they can, all but points and directions.
 inline bool competes(const LightSample& light, const Scattering& scattering) {

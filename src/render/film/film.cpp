@@ -10,6 +10,7 @@
 #include "materials/visible_slope.hpp"
 #include "reading/fnv.hpp"
 #include "reflectree/error.hpp"
+#include "shapes/flat.hpp"
 
 namespace reflectree::render {
 
@@ -78,18 +79,24 @@ std::uint64_t identity_of(const Scene& s, const RenderOptions& o) {
   for (const double v :
        {double(s.width), double(s.height), double(s.max_depth), double(s.rr_depth), double(s.points.kind),
         double(t.method), double(t.split), double(t.photons.count), double(t.photons.radius),
-        double(t.photons.shrink), double(t.photons.gather), double(o.technique)}) {
+        double(t.photons.shrink), double(t.photons.gather), double(o.technique.value_or(t.technique))}) {
     h = fnv(std::to_string(v), h);
   }
   return fnv(std::to_string(o.seed), h);
 }
 
-Direction through(const Scene& scene, float x, float y) {
-  const Camera& c = scene.camera;
-  const float px = 1 - 2 * (x / float(scene.width) + c.shift_x),
-              py = 1 - 2 * (y / float(scene.height) + c.shift_y);
-  return normalize(c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up);
+}  // namespace
+
+CameraLine line_through(const Camera& c, float x, float y, Vec2<double> on_lens) {
+  const float px = 1 - 2 * (x + c.shift_x), py = 1 - 2 * (y + c.shift_y);
+  if (c.parallel) return {c.origin + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up, c.forward};
+  const Direction towards = c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up;
+  if (!(c.lens > 0)) return {c.origin, normalize(towards)};
+  const Direction from = (c.lens * float(on_lens.x)) * c.left + (c.lens * float(on_lens.y)) * c.up;
+  return {c.origin + from, normalize(c.focus * towards - from)};
 }
+
+namespace {
 
 // Pixels that are rendered together, a sample of each at a time: what meets in packets of rays depends on
 // nothing else.
@@ -112,8 +119,11 @@ void add_sample(const Integrator& integrator, const Scene& scene, const Tile& ti
     for (int x = tile.x0; x < tile.x1; ++x) {
       PathBits u(film.points, film.seed, pixel(x, y), std::uint32_t(sample));
       const Vec2<float> off = offset(scene, x, y, u);
-      const Direction along = through(scene, float(x) + .5f + off.x, float(y) + .5f + off.y);
-      rays.push_back({scene.camera.origin, along, u});
+      const Camera& c = scene.camera;
+      const CameraLine line = line_through(c, (float(x) + .5f + off.x) / float(scene.width),
+                                           (float(y) + .5f + off.y) / float(scene.height),
+                                           c.lens > 0 ? in_disk(u) : Vec2<double>{});
+      rays.push_back({line.origin, line.direction, u});
     }
   }
   std::vector<Rgb> found(rays.size());
@@ -136,7 +146,7 @@ bool render_into(Film& film, const Scene& scene, const RenderOptions& options, c
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  const auto integrator = make_integrator(scene, options.technique);
+  const auto integrator = make_integrator(scene, options.technique.value_or(scene.transport.technique));
   const bool timed = options.seconds > 0;
   const int goal = timed ? (1 << 30) : options.samples > 0 ? options.samples : scene.samples;
   const std::uint64_t identity = identity_of(scene, options);

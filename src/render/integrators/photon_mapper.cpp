@@ -23,14 +23,15 @@ float radius_for(const World& world) {
   const Camera& c = scene.camera;
   std::vector<float> distances;
   for (int i = 0; i < 256; ++i) {
-    const float x = (float(i % 16) + .5f) / 8 - 1, y = (float(i / 16) + .5f) / 8 - 1;
-    const Direction along = normalize(c.forward + (x * c.tan_x) * c.left + (y * c.tan_y) * c.up);
-    if (const auto hit = world.embree.intersect({c.origin, along})) distances.push_back(hit->distance);
+    const CameraLine line = line_through(c, (float(i % 16) + .5f) / 16, (float(i / 16) + .5f) / 16);
+    if (const auto hit = world.embree.intersect({line.origin, line.direction}))
+      distances.push_back(hit->distance);
   }
   if (distances.empty()) return 1;
   std::nth_element(distances.begin(), distances.begin() + std::ptrdiff_t(distances.size() / 2),
                    distances.end());
-  return 4 * distances[distances.size() / 2] * 2 * c.tan_x / float(scene.width);
+  const float away = c.parallel ? length(c.left) : distances[distances.size() / 2];
+  return 4 * away * 2 * c.tan_x / float(scene.width);
 }
 
 }  // namespace

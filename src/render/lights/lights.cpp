@@ -76,6 +76,12 @@ Direction facing(const Scene& scene, const Triangle& t) {
 
 Rgb SpotLight::towards(Direction direction) const {
   const Direction w = to_local(frame, direction);
+  if (tan_x > 0) {
+    const float u = .5f - .5f * w.x / (w.z * tan_x), v = .5f - .5f * w.y / (w.z * tan_y);
+    if (!(w.z > 0 && u >= 0 && u <= 1 && v >= 0 && v <= 1)) return {};
+    const Rgb shown = picture ? intensity * eval(*picture, {{u, v}}) : intensity;
+    return (1 / (w.z * w.z * w.z)) * shown;
+  }
   const float angle = angle_of(std::sqrt(sin2_theta(w)), w.z);
   if (!(angle < cutoff)) return {};
   const float fall = angle <= beam ? 1 : (cutoff - angle) / (cutoff - beam);

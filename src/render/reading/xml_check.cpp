@@ -101,8 +101,12 @@ std::string with_underscores(std::string_view name) {
 
 }  // namespace
 
-// Files of Mitsuba before 2.0: the words that Mitsuba 3's own reader converts.
+// Files of Mitsuba before 2.0: the words that Mitsuba 3's own reader converts. Of all files: Mitsuba takes a
+// texture under the name <spectrum>, too; a shorter name is written in place, and the element keeps its own.
 void XmlReader::upgrade(Node n) {
+  static const std::set<std::string_view> textures{"bitmap", "checkerboard", "mesh_attribute", "rawconstant"};
+  if (n.name() == std::string_view("spectrum") && textures.count(n.attribute("type").value()))
+    n.set_name("texture");
   if (text_.is_old(n.offset_debug()) && n != root_) {
     for (const Node c : n.children()) {
       pugi::xml_attribute name = c.attribute("name");

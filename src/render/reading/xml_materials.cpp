@@ -262,6 +262,11 @@ ScatteringPtr MaterialReader::make(Node n, int depth) {
     Texture opacity = number(n, "opacity", .5);
     return mask(std::move(opacity), only_one_inside(n, depth, "opacity"));
   }
+  if (type == "null") {  // as a mask that is not there
+    xml_.only(n, {});
+    lets_pass_ = true;
+    return mask({}, diffuse({}));
+  }
   if (type == "normalmap" || type == "bumpmap") return perturbed(n, depth);
   if (type == "measured") return from_file(n);
   if (type == "reflectree") return from_text(n);

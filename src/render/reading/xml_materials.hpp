@@ -38,6 +38,7 @@ class MaterialReader {
   Texture number(Node n, const char* name, double otherwise);
   Texture texture_of(Node t);
   Texture mesh_attribute(Node t);
+  Texture raw_constant(Node t) const;
   Texture bitmap(Node t) const;
   Texture checkerboard(Node t) const;
   std::array<float, 6> to_uv(Node t) const;

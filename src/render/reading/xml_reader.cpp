@@ -87,6 +87,26 @@ Node XmlReader::child(Node n, const char* tag) const {
   return found;
 }
 
+Node XmlReader::part(Node n, const char* tag) const {
+  Node found;
+  for (const Node c : n.children()) {
+    const Node meant = c.type() == pugi::node_element ? resolve(c) : Node();
+    if (meant.name() != std::string_view(tag)) continue;
+    if (found) fail(c, "a second <" + std::string(tag) + ">", "keep one of the two");
+    found = meant;
+  }
+  return found;
+}
+
+void XmlReader::refer_to(Node n, Names tags) const {
+  for (const Node c : n.children("ref")) {
+    const std::string_view meant = resolve(c).name();
+    if (std::find(tags.begin(), tags.end(), meant) == tags.end())
+      fail(c, "<" + std::string(n.name()) + "> cannot refer to a <" + std::string(meant) + ">",
+           "refer to a " + std::string(*tags.begin()));
+  }
+}
+
 std::vector<double> XmlReader::numbers(Node n, const std::string& words) const {
   std::vector<double> found;
   const char* at = words.c_str();

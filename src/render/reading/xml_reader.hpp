@@ -88,6 +88,10 @@ class XmlReader {
   static std::string text(Node n, const char* attribute) { return n.attribute(attribute).value(); }
   // The only child of this tag, or none.
   Node child(Node n, const char* tag) const;
+  // The same, where a <ref> may stand in its place.
+  Node part(Node n, const char* tag) const;
+  // Throws where a <ref> in `n` leads to anything else.
+  void refer_to(Node n, Names tags) const;
   std::vector<double> numbers(Node n, const std::string& words) const;
   double number(Node n, const char* attribute, double otherwise) const;
   Vec3<double> triple(Node n, const char* attribute) const;

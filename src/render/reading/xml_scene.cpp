@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mitsuba 3's XML: what is known is read, everything else is an Error with line and column.
+#include <algorithm>
 #include <filesystem>
 
 #include "reflectree/error.hpp"
@@ -27,22 +28,39 @@ class SceneReader {
       seen = seen || first_sensor;
       xml_.attempt([&] { return read_part(n, first_sensor), true; }, false);
     }
-    if (volumes_ && materials_.lets_pass() &&
-        !(scene_.point_lights.empty() && scene_.spot_lights.empty() && scene_.directional_lights.empty()))
+    if (volumes_ && materials_.lets_pass() && shines_from_a_point())
       xml_.attempt(
           [&]() -> bool {
             xml_.fail(volumes_, "lamps of a point or a direction do not shine through masks and panes here",
                       "write type=\"path\", which shows the same in Mitsuba");
           },
           false);
+    const auto mirrors = [](const Surface& s) {
+      return s.scattering && s.scattering->lobes() != Lobes::finite;
+    };
+    if (lights_alone_ && std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), mirrors))
+      xml_.attempt(
+          [&]() -> bool {
+            xml_.fail(lights_alone_,
+                      "mirrors, glass and masks without a direction of their own are not drawn here",
+                      "write bsdf_samples 1 or more");
+          },
+          false);
     xml_.throw_problems();
     if (!seen) throw Error("no <sensor>", path, "add a perspective sensor");
     if (const std::string words = xml_.idle_words(); !words.empty())
       scene_.notes.push_back(path + ": " + words);
+    if (light_samples_ > 1 && shines_from_a_point())
+      scene_.notes.push_back(path + ": lamps of a point or a direction count once here, and in Mitsuba " +
+                             std::to_string(light_samples_) + " times, once for each of their samples");
     return std::move(scene_);
   }
 
  private:
+  bool shines_from_a_point() const {
+    return !(scene_.point_lights.empty() && scene_.spot_lights.empty() && scene_.directional_lights.empty());
+  }
+
   // The first sensor takes the picture, as in Mitsuba.
   void read_part(Node n, bool first_sensor) {
     const std::string_view tag = n.name();
@@ -54,8 +72,8 @@ class SceneReader {
       shapes_.read(n);
     else if (tag == "emitter")
       read_emitter(n);
-    else if (tag != "default" && tag != "alias" && tag != "bsdf" &&
-             tag != "texture")  // read where they are named
+    else if (tag != "default" && tag != "alias" && tag != "bsdf" && tag != "texture" && tag != "sampler" &&
+             tag != "film" && tag != "rfilter")  // read where they are named
       xml_.fail(n, "<" + std::string(tag) + "> is not known here", "leave it out");
   }
 
@@ -71,9 +89,7 @@ class SceneReader {
     t.method = *method;
     scene_.hide_lamps = xml_.flag(n, "hide_emitters", false);
     if (t.method == Transport::Method::direct) {
-      xml_.only(n, {"shading_samples", "hide_emitters"});
-      t.split = xml_.integer(n, "shading_samples", 0);
-      return;
+      return read_direct(n);
     }
     if (t.method == Transport::Method::photons) {
       xml_.only(n, {"max_depth", "rr_depth", "split", "photon_count", "radius", "alpha", "final_gather",
@@ -91,6 +107,25 @@ class SceneReader {
     scene_.max_depth = xml_.integer(n, "max_depth", -1);
     scene_.rr_depth = xml_.integer(n, "rr_depth", 5);
     if (scene_.rr_depth < 1) xml_.fail(n, "rr_depth is not positive", "write 1 or more");
+  }
+
+  // Without directions of the surface's own, lamps are found by light alone, and without such of lamps by the
+  // surface alone; how many there are of both tells of noise, not of light.
+  void read_direct(Node n) {
+    xml_.only(n, {"shading_samples", "emitter_samples", "bsdf_samples", "hide_emitters"});
+    Transport& t = scene_.transport;
+    const Node own = XmlReader::named(n, "bsdf_samples"), lights = XmlReader::named(n, "emitter_samples");
+    if ((own || lights) && XmlReader::named(n, "shading_samples"))
+      xml_.fail(n, "both shading_samples and one of emitter_samples and bsdf_samples", "leave the first out");
+    const int both = xml_.integer(n, "shading_samples", 1),
+              of_lights = xml_.integer(n, "emitter_samples", both),
+              of_surface = xml_.integer(n, "bsdf_samples", both);
+    if (!(of_lights >= 0 && of_surface >= 0 && of_lights + of_surface > 0))
+      xml_.fail(n, "numbers of samples that are negative or all 0", "write 1 or more");
+    light_samples_ = of_lights;
+    if (own || lights || XmlReader::named(n, "shading_samples")) t.split = std::max(of_lights, of_surface);
+    if (of_lights == 0) t.technique = Technique::surface;
+    if (of_surface == 0) t.technique = Technique::light, lights_alone_ = own;
   }
 
   // Further statistics about the picture of the integrator inside, which is all that is computed.
@@ -147,6 +182,8 @@ class SceneReader {
       if (XmlReader::named(n, "texture") && !scene_.spot_lights.back().picture)
         xml_.fail(XmlReader::named(n, "texture"), "a spot light's texture is a picture",
                   "write one colour as 'intensity'");
+    } else if (type == "projector") {
+      read_projector(n);
     } else if (type == "directional") {
       xml_.only(n, {"direction", "irradiance", "to_world"});
       either(n, "direction");
@@ -159,11 +196,33 @@ class SceneReader {
     }
   }
 
+  void read_projector(Node n) {
+    xml_.only(n, {"irradiance", "scale", "fov", "fov_axis", "focal_length", "to_world"});
+    SpotLight p{apply(xml_.transform(XmlReader::named(n, "to_world")), {}, 1),
+                xml_.rotation(n, "to_world"),
+                {1, 1, 1},
+                0,
+                0,
+                materials_.emission(n, "irradiance")};
+    if (!p.picture) p.intensity = xml_.colour(n, "irradiance", p.intensity, ColourOf::light);
+    const double scale = xml_.property(n, "scale", 1);
+    if (!(scale >= 0)) xml_.fail(n, "a negative scale", "write a number from 0 on");
+    p.intensity = (pi * float(scale)) * p.intensity;
+    const bool seen = p.picture && p.picture->picture;
+    const double aspect = seen ? double(p.picture->picture->width) / p.picture->picture->height : 1,
+                 t = half_width(xml_, n, aspect);
+    p.tan_x = float(t), p.tan_y = float(t / aspect);
+    p.beam = p.cutoff = float(std::atan(std::hypot(t, t / aspect)));
+    scene_.spot_lights.push_back(std::move(p));
+  }
+
   const XmlReader& xml_;
   MaterialReader materials_;
   Scene scene_;
   ShapeReader shapes_;
-  Node volumes_;  // an integrator that looks for volumes
+  Node volumes_;       // an integrator that looks for volumes
+  Node lights_alone_;  // bsdf_samples, if it is 0
+  int light_samples_ = 1;
 };
 
 }  // namespace

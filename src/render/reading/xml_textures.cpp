@@ -14,7 +14,7 @@ std::array<float, 6> MaterialReader::to_uv(Node t) const {
 // A picture from 8 or 16 bits is in sRGB unless it is `raw`.
 Texture MaterialReader::bitmap(Node t) const {
   using Wrap = Texture::Wrap;
-  xml_.only(t, {"filename", "filter_type", "wrap_mode", "raw", "to_uv"});
+  xml_.only(t, {"filename", "filter_type", "wrap_mode", "raw", "to_uv", "format", "accel"});
   Texture made;
   const std::string wrap = xml_.word(t, "wrap_mode", "repeat"),
                     filter = xml_.word(t, "filter_type", "bilinear");
@@ -25,6 +25,11 @@ Texture MaterialReader::bitmap(Node t) const {
   made.wrap = wrap == "repeat" ? Wrap::repeat : wrap == "mirror" ? Wrap::mirror : Wrap::clamp;
   made.nearest = filter == "nearest";
   made.to_uv = to_uv(t);
+  const std::string format = xml_.word(t, "format", "auto");  // Mitsuba's own, in its memory
+  if (format != "auto" && format != "variant" && format != "fp16")
+    xml_.fail(t, "no format '" + format + "'", "use auto, variant or fp16");
+  xml_.flag(t, "accel", true);
+  for (const char* word : {"format", "accel"}) xml_.idle(XmlReader::named(t, word));
   const std::string file = xml_.file(t);
   const bool raw = xml_.flag(t, "raw", false);
   xml_.placed(t,
@@ -62,9 +67,27 @@ Texture MaterialReader::texture_of(Node t) {
     if (XmlReader::type(t) == "bitmap") return bitmap(t);
     if (XmlReader::type(t) == "checkerboard") return checkerboard(t);
     if (XmlReader::type(t) == "mesh_attribute") return mesh_attribute(t);
+    if (XmlReader::type(t) == "rawconstant") return raw_constant(t);
     xml_.unknown(t);
   };
   return xml_.attempt(read, Texture{});
+}
+
+// One number, or three as they are.
+Texture MaterialReader::raw_constant(Node t) const {
+  xml_.only(t, {"value"});
+  const Node value = XmlReader::named(t, "value");
+  if (!value) xml_.fail(t, "no 'value'", "add it");
+  Texture made;
+  if (value.name() == std::string_view("vector") || value.name() == std::string_view("point")) {
+    const auto v = xml_.point(t, "value", {});
+    made.colour = {float(v.x), float(v.y), float(v.z)};
+  } else {
+    made.colour = to_rgb(float(xml_.property(t, "value", 0)));
+  }
+  if (!(made.colour.r >= 0 && made.colour.g >= 0 && made.colour.b >= 0))
+    xml_.fail(value, "a value below 0", "write numbers from 0 on");
+  return made;
 }
 
 Texture MaterialReader::mesh_attribute(Node t) {

@@ -126,11 +126,11 @@ std::array<Rgb, max_attributes> attributes_at(const Scene& scene, const Hit& hit
   const Surface& surface = scene.surfaces[t.surface];
   const auto u = float(hit.u), v = float(hit.v);
   for (std::size_t i = 0; i < std::min(found.size(), surface.attributes.size()); ++i) {
-    const auto& [of_triangles, values] = surface.attributes[i];
-    const auto at = [&](std::size_t k) { return k < values.size() ? values[k] : Rgb{}; };
+    const Surface::Attribute& a = surface.attributes[i];
+    const auto at = [&](std::size_t k) { return k < a.values.size() ? a.values[k] : Rgb{}; };
     const auto corner = [&](std::size_t k) { return at(t.corner[k] - surface.first_vertex); };
-    found[i] = of_triangles ? at(hit.index - surface.first_triangle)
-                            : (1 - u - v) * corner(0) + u * corner(1) + v * corner(2);
+    found[i] = a.of_triangles ? at(hit.index - surface.first_triangle)
+                              : (1 - u - v) * corner(0) + u * corner(1) + v * corner(2);
   }
   return found;
 }

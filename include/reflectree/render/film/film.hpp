@@ -13,7 +13,7 @@ namespace reflectree::render {
 struct RenderOptions {
   int samples = 0;  // per pixel; 0: the scene's
   std::uint64_t seed = 1;
-  Technique technique = Technique::balance;
+  std::optional<Technique> technique{};  // otherwise the scene's
   double seconds = 0;  // > 0: stop after this time, between passes; `samples` is then ignored
 };
 
