@@ -125,7 +125,8 @@ def threads():
     """Two threads beside one, alternating. On a machine that others use, the clock tells what they left of it; but the
     kernel knows for how long each thread ran, waited for a core, or was blocked by a lock or the GIL. With two cores
     free nobody waits for one, and the pair takes as long as the slower of them runs and is blocked."""
-    print("\n| two threads beside one, 10⁶ directions each | by the clock | with two cores free | blocked |")
+    repeats, rounds = 4, 11
+    print(f"\n| two threads beside one, {repeats} × 10⁶ directions each | by the clock | with two cores free | blocked |")
     print("|---|---:|---:|---:|")
     material, wo = rt.Sampler("ggx:alpha=0.1"), viewers(np.float32)
     u = np.random.default_rng(2).random((N, 2)).astype(np.float32)
@@ -135,13 +136,18 @@ def threads():
                        ("one-shot from uniforms", lambda k: material.sample_one_shot(wo, u, out=out[k])),
                        ("exact pdf", lambda k: material.pdf(wo, wo, out=out[k].pdf))):
         by_clock, by_kernel, blocked = [], [], []
-        for _ in range(25):
-            alone = observed(lambda: call(0))
+
+        def repeated(k):
+            for _ in range(repeats):
+                call(k)
+
+        for _ in range(rounds):
+            alone = observed(lambda: repeated(0))
             pair, barrier = [None, None], threading.Barrier(2)
 
             def work(k):
                 barrier.wait()
-                pair[k] = observed(lambda: call(k))
+                pair[k] = observed(lambda: repeated(k))
 
             started = [threading.Thread(target=work, args=(k,)) for k in range(2)]
             for t in started:
@@ -153,7 +159,7 @@ def threads():
             blocked.append(max((p[0] - p[1] - p[2]) / (p[0] - p[2]) for p in pair))
         line(name, *("{:.2f} ({:.2f} to {:.2f})".format(*np.quantile(x, (0.5, 0.25, 0.75))) for x in (by_clock, by_kernel)),
              f"{100 * np.median(blocked):.1f} %")
-    print("Medians of 25, with quartiles; blocked: the share of a thread's time, waits for a core left out.")
+    print(f"Medians of {rounds}, with quartiles; blocked: the share of a thread's time, waits for a core left out.")
 
 
 def judges():

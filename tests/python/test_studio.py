@@ -79,25 +79,25 @@ def test_progress_ends_it():
             raise Enough
 
     with pytest.raises(Enough):
-        rt.render(spp=64, progress=stop)
+        rt.render(spp=64, sampler="cosine", progress=stop)
     assert stages[0] == "building"
 
 
 @pytest.fixture(scope="module")
 def compared():
-    return rt.compare("ggx:alpha=0.3", samplers=["one-shot", "cosine", "textbook"], theta_o=[np.radians(45)])
+    return rt.compare("ggx:alpha=0.3", samplers=["one-shot", "cosine"], theta_o=[np.radians(45)])
 
 
 def test_compare(compared):
-    assert [r["sampler"] for r in compared.rows] == ["one-shot", "cosine", "textbook"]
+    assert [r["sampler"] for r in compared.rows] == ["one-shot", "cosine"]
     assert all(r["theta_o_deg"] == pytest.approx(45) and not r["biased"] for r in compared.rows)
-    ours, cosine, _ = compared.rows
+    ours, cosine = compared.rows
     assert ours["target_variance"] < 0.1 < cosine["target_variance"]
-    assert [s["kind"] for s in compared.scores] == ["ours", "general", "special"]
+    assert [s["kind"] for s in compared.scores] == ["ours", "general"]
     assert compared.scores[1]["efficiency"] < 1 and (compared.materials, compared.won) == (1, 1)
     text = str(compared)
     assert text.splitlines()[0].startswith("ggx:alpha=0.3") and "best of all general methods on 1 of 1" in text
-    assert "3 samplers" in repr(compared) and "<table>" in compared._repr_html_()
+    assert "2 samplers" in repr(compared) and "<table>" in compared._repr_html_()
 
 
 @pytest.mark.parametrize("call, match", [
