@@ -17,6 +17,7 @@ void add_info(CLI::App& app, Context& context, Run& run);
 void add_eval(CLI::App& app, Context& context, Run& run);
 void add_sample(CLI::App& app, Context& context, Run& run);
 void add_verify(CLI::App& app, Context& context, Run& run);
+void add_doctor(CLI::App& app, Context& context, Run& run);
 void add_draw(CLI::App& app, Context& context, Run& run);
 void add_bake(CLI::App& app, Context& context, Run& run);
 void add_export(CLI::App& app, Context& context, Run& run);

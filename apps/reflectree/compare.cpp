@@ -86,11 +86,8 @@ std::string command_of(const CompareOptions& given) {
 }
 
 int run_compare(const Context& context, const CompareOptions& given) {
-  StudyOptions o;
+  StudyOptions o = given.quick ? quick_study() : StudyOptions{};
   o.seed = context.seed;
-  if (given.quick)
-    o.samples = 1U << 13U, o.round_seconds = 5e-4, o.curve_repeats = 8, o.cubature_evaluations = 200'000;
-  if (given.quick) o.curve_samples = 256;
   if (!given.theta_o_deg.empty()) o.theta_o_deg = parse_theta_o(given.theta_o_deg);
   const std::vector<const SamplerInfo*> wanted = chosen_samplers(given.samplers);
   // Everything is read before the long work begins.

@@ -11,10 +11,6 @@
 #include "reflectree/formats/format_table.hpp"
 #include "reflectree/text/edit_distance.hpp"
 
-namespace reflectree::cli {
-void add_doctor(CLI::App& app, Context& context, Run& run);
-}
-
 namespace {
 
 using namespace reflectree;

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the Python package costs: builds of NumPy functions, sampling beside C++, memory, threads.
+"""What the Python package costs: builds of NumPy functions, sampling, memory, threads, judges.
 
-Usage: PYTHONPATH=build/python measure.py. Sampling is in CPU time of the thread, the
-least of some runs; builds are in CPU time and by the clock. Run it on a machine that does nothing else.
+Usage: PYTHONPATH=build/python measure.py [PART...], of builds, rates, memory, threads, judges. Sampling is in CPU time of
+the thread, the least of some runs; builds and judges are in CPU time and by the clock. Best on a machine that does
+nothing else; on a shared one the clock tells little, and ratios of CPU times something.
 """
 
 import os
 import platform
 import resource
+import sys
 import threading
 import time
 import tracemalloc
@@ -104,29 +106,94 @@ def memory():
          f"{(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024:.2f}")
 
 
-def threads():
-    """Two threads beside one, by the clock, alternating; the median of the ratios."""
-    sampler, wo = rt.Sampler("ggx:alpha=0.1"), viewers(np.float32)
-    out = [sampler.sample(wo, rng=k) for k in range(2)]
-    ratios = []
-    for _ in range(15):
-        alone = least(lambda: sampler.sample(wo, rng=1, out=out[0]), 1, time.perf_counter)
+def kernel_times():
+    """Nanoseconds that this thread has run, and that it has waited for a core; Linux alone."""
+    with open("/proc/thread-self/schedstat") as file:
+        ran, waited, _ = file.read().split()
+    return int(ran), int(waited)
 
-        def both():
-            started = [threading.Thread(target=sampler.sample, args=(wo,), kwargs={"rng": k, "out": out[k]})
-                       for k in range(2)]
+
+def observed(work):
+    """Seconds by the clock, on a core, waiting for a core; what is left was spent blocked."""
+    clock, (ran, waited) = time.perf_counter_ns(), kernel_times()
+    work()
+    now = kernel_times()
+    return np.array([time.perf_counter_ns() - clock, now[0] - ran, now[1] - waited]) * 1e-9
+
+
+def threads():
+    """Two threads beside one, alternating. On a machine that others use, the clock tells what they left of it; but the
+    kernel knows for how long each thread ran, waited for a core, or was blocked by a lock or the GIL. With two cores
+    free nobody waits for one, and the pair takes as long as the slower of them runs and is blocked."""
+    repeats, rounds = 4, 11
+    print(f"\n| two threads beside one, {repeats} × 10⁶ directions each | by the clock | with two cores free | blocked |")
+    print("|---|---:|---:|---:|")
+    material, wo = rt.Sampler("ggx:alpha=0.1"), viewers(np.float32)
+    u = np.random.default_rng(2).random((N, 2)).astype(np.float32)
+    out = [material.sample(wo, rng=k) for k in range(2)]
+    for name, call in (("exact", lambda k: material.sample(wo, rng=k, out=out[k])),
+                       ("one-shot by alias table", lambda k: material.sample_one_shot(wo, rng=k, out=out[k])),
+                       ("one-shot from uniforms", lambda k: material.sample_one_shot(wo, u, out=out[k])),
+                       ("exact pdf", lambda k: material.pdf(wo, wo, out=out[k].pdf))):
+        by_clock, by_kernel, blocked = [], [], []
+
+        def repeated(k):
+            for _ in range(repeats):
+                call(k)
+
+        for _ in range(rounds):
+            alone = observed(lambda: repeated(0))
+            pair, barrier = [None, None], threading.Barrier(2)
+
+            def work(k):
+                barrier.wait()
+                pair[k] = observed(lambda: repeated(k))
+
+            started = [threading.Thread(target=work, args=(k,)) for k in range(2)]
             for t in started:
                 t.start()
             for t in started:
                 t.join()
+            by_clock.append(2 * alone[0] / max(p[0] for p in pair))
+            by_kernel.append(2 * alone[1] / max(p[0] - p[2] for p in pair))
+            blocked.append(max((p[0] - p[1] - p[2]) / (p[0] - p[2]) for p in pair))
+        line(name, *("{:.2f} ({:.2f} to {:.2f})".format(*np.quantile(x, (0.5, 0.25, 0.75))) for x in (by_clock, by_kernel)),
+             f"{100 * np.median(blocked):.1f} %")
+    print(f"Medians of {rounds}, with quartiles; blocked: the share of a thread's time, waits for a core left out.")
 
-        ratios.append(2 * alone / least(both, 1, time.perf_counter))
-    print(f"\nTwo threads sample {np.median(ratios):.2f} times as fast as one (quartiles "
-          f"{np.quantile(ratios, 0.25):.2f} and {np.quantile(ratios, 0.75):.2f}).")
+
+def judges():
+    """What verdicts cost, and how many pairs of directions a function is given at once."""
+    print("\n| judge | clock | CPU | pairs per call |\n|---|---:|---:|---:|")
+
+    def measured(name, work, calls=lambda result: None):
+        clock, cpu = time.perf_counter(), time.process_time()
+        result = work()
+        clock, cpu = time.perf_counter() - clock, time.process_time() - cpu
+        count = calls(result)
+        line(name, f"{clock:.1f} s", f"{cpu:.1f} s", f"{count[1] / count[0]:.0f}" if count else "")
+
+    material, mine = rt.Sampler("ggx:alpha=0.1"), rt.Sampler(ggx)
+
+    def draw(wo, rng):
+        s = mine.sample_one_shot(wo, rng=rng)
+        return s.wi, s.pdf, s.weight, s.valid
+
+    def density(wo, wi):
+        return mine.pdf(wo, wi, mode="one-shot")
+
+    measured("`rt.doctor`, a material's exact mode", lambda: rt.doctor(material))
+    measured("`rt.doctor`, three functions of NumPy", lambda: rt.doctor(eval=ggx, sample=draw, pdf=density),
+             lambda d: (d.calls, d.directions))
+    measured("`rt.verify`, a material, effort 1", lambda: rt.verify(material))
+    before = mine.brdf.calls
+    measured("`rt.verify`, a NumPy function, effort 0.1", lambda: rt.verify(mine, effort=0.1),
+             lambda _: tuple(np.subtract(mine.brdf.calls, before)))
 
 
 print(f"Python {platform.python_version()}, NumPy {np.__version__}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}")
-builds()
-rates()
-memory()
-threads()
+PARTS = {part.__name__: part for part in (builds, rates, memory, threads, judges)}
+for part in sys.argv[1:] or PARTS:
+    if part not in PARTS:
+        sys.exit(f"no part '{part}'; choose of {', '.join(PARTS)}")
+    PARTS[part]()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Points that fill the square evenly stay even on the hemisphere: one-shot mode maps two uniforms to a direction."""
 
+# %%
 import numpy as np
 
 import reflectree as rt
@@ -19,6 +20,11 @@ def r2(n):
     return np.outer(np.arange(n), [0.7548776662466927, 0.5698402909980532]) % 1
 
 
+# %% [markdown]
+# The error under that light of points that are random, and of points that are even; a random shift of the even ones
+# leaves them even, and makes the estimate unbiased.
+
+# %%
 exact = np.mean([np.mean(s.weight * light(s.wi), axis=0)
                  for s in (sampler.sample_one_shot(wo, (r2(200_000) + shift) % 1) for shift in (0, 0.3, 0.6))], axis=0)
 rng = np.random.default_rng(1)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """My own BRDF: from a formula with its parameters, and from the array of a gonioreflectometer."""
 
+# %%
 import pickle
 
 import numpy as np
@@ -28,8 +29,11 @@ assert np.array_equal(again.sample(wo, 50_000, rng=1).wi, drawn.wi)
 print(f"share within 0.1 radians of the viewer: {np.mean(drawn.wi @ wo > np.cos(0.1)):.3f}")
 
 
-# A gonioreflectometer's array: values at (theta_o, theta_i, phi), radians. This instrument puts phi = 0 where a
-# mirror reflects, and reports values with the cosine. Both must be said: there is no default for either.
+# %% [markdown]
+# A gonioreflectometer's array: values at (θ_o, θ_i, φ), radians. This instrument puts φ = 0 where a mirror reflects,
+# and reports values with the cosine. Both must be said: there is no default for either.
+
+# %%
 THETA = np.linspace(0, 1.5, 16)
 PHI = np.linspace(0, np.pi, 19)
 o, i, p = np.meshgrid(THETA, THETA, PHI, indexing="ij")

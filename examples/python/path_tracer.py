@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A path tracer in NumPy: a sphere on a floor under a sky, both covered by samplers of ours.
 
-Usage: path_tracer.py [WIDTH [SAMPLES [FILE.ppm]]]. All paths of a picture go on together, one bounce at a time.
+All paths of a picture go on together, one bounce at a time.
 """
 
-import sys
-
+# %%
 import numpy as np
 
 import reflectree as rt
 
-WIDTH = int(sys.argv[1]) if len(sys.argv) > 1 else 48
-SAMPLES = int(sys.argv[2]) if len(sys.argv) > 2 else 16
+WIDTH, SAMPLES = 48, 16
+FILE = None  # "picture.ppm"
 HEIGHT, BOUNCES = WIDTH * 2 // 3, 4
 CENTRE, RADIUS = np.array([0, 0, 1.0]), 1.0
 COVERS = [rt.Sampler("plastic:alpha=0.1"), rt.Sampler(lambda wo, wi: np.full(len(wo), 0.5 / np.pi))]  # sphere, floor
@@ -69,6 +68,7 @@ def radiance(o, d, rng):
     return found
 
 
+# %%
 rng = np.random.default_rng(1)
 y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
 picture = np.zeros((HEIGHT * WIDTH, 3))
@@ -78,7 +78,7 @@ for _ in range(SAMPLES):
     d /= np.linalg.norm(d, axis=1, keepdims=True)
     picture += radiance(np.tile([0, -4.0, 1.4], (len(d), 1)), d, rng) / SAMPLES
 print(f"{WIDTH} x {HEIGHT}, {SAMPLES} samples per pixel: mean {picture.mean():.3f}")
-if len(sys.argv) > 3:
+if FILE:
     bytes_ = (255 * np.clip(picture, 0, 1) ** (1 / 2.2)).astype(np.uint8)
-    with open(sys.argv[3], "wb") as file:
+    with open(FILE, "wb") as file:
         file.write(b"P6 %d %d 255\n" % (WIDTH, HEIGHT) + bytes_.tobytes())

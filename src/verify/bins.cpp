@@ -108,10 +108,62 @@ CubatureResult integrate(const Integrand& f, const CubatureBox& box, CubatureOpt
   return total;
 }
 
-using Points = std::vector<Vec2<double>>;
+// Every box. A function that is called from one thread may be a program on a pipe or one of Python, to which
+// each call is dear: the cubatures of many boxes go on together, and what they ask next is asked at once. A
+// cubature is begun anew each time, with the answers that it has had, and ends where it asks for more.
+struct Unanswered {};
 
-// Every box. A function that is called from one thread may be a program on a pipe, to which each call is
-// dear: what the cubatures ask first is asked for all boxes at once.
+struct Replay {
+  std::vector<std::vector<double>> answers;  // to its calls, in order
+  std::vector<Vec2<double>> asked;           // by the call after them; empty: it is done
+  CubatureResult result;
+
+  void go_on(const CubatureBox& box, const CubatureOptions& options) {
+    std::size_t next = 0;
+    asked.clear();
+    const Integrand remembered = [&](std::span<const Vec2<double>> p, std::span<double> out) {
+      if (next < answers.size()) {
+        std::copy(answers[next].begin(), answers[next].end(), out.begin());
+        ++next;
+        return;
+      }
+      asked.assign(p.begin(), p.end());
+      throw Unanswered{};
+    };
+    try {
+      result = integrate(remembered, box, options);
+      answers.clear();
+    } catch (const Unanswered&) {
+    }
+  }
+};
+
+void integrate_together(const Integrand& f, std::span<const CubatureBox> boxes,
+                        const CubatureOptions& options, std::span<CubatureResult> results, const Host& host) {
+  std::vector<Replay> replays(boxes.size());
+  std::vector<Vec2<double>> all;
+  std::vector<double> values;
+  do {
+    if (host.cancelled()) throw Cancelled();
+    std::size_t from = 0;
+    all.clear();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      Replay& r = replays[i];
+      if (!values.empty() && r.asked.empty()) continue;
+      if (!r.asked.empty()) {
+        const auto begin = values.begin() + std::ptrdiff_t(from);
+        from += r.asked.size();
+        r.answers.emplace_back(begin, values.begin() + std::ptrdiff_t(from));
+      }
+      r.go_on(boxes[i], options);
+      all.insert(all.end(), r.asked.begin(), r.asked.end());
+    }
+    values.resize(all.size());
+    if (!all.empty()) f(all, values);
+  } while (!all.empty());
+  for (std::size_t i = 0; i < boxes.size(); ++i) results[i] = replays[i].result;
+}
+
 std::vector<CubatureResult> integrate_all(const Integrand& f, bool concurrent,
                                           const std::vector<CubatureBox>& boxes,
                                           const CubatureOptions& options, const Host& host) {
@@ -121,27 +173,11 @@ std::vector<CubatureResult> integrate_all(const Integrand& f, bool concurrent,
                            [&](std::size_t i) { results[i] = integrate(f, boxes[i], options); });
     return results;
   }
-  Points all;
-  std::vector<std::size_t> first;  // of each call
-  const Integrand record = [&](std::span<const Vec2<double>> p, std::span<double> out) {
-    first.push_back(all.size());
-    all.insert(all.end(), p.begin(), p.end());
-    std::fill(out.begin(), out.end(), 0.);  // no error: nothing more is asked
-  };
-  for (const CubatureBox& box : boxes) integrate(record, box, options);
-  std::vector<double> known(all.size());
-  f(all, known);
-  std::size_t next = 0;
-  const Integrand replay = [&](std::span<const Vec2<double>> p, std::span<double> out) {
-    if (next < first.size() && all[first[next]] == p[0]) {
-      std::copy_n(known.begin() + std::ptrdiff_t(first[next++]), out.size(), out.begin());
-    } else {
-      f(p, out);
-    }
-  };
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (host.cancelled()) throw Cancelled();
-    results[i] = integrate(replay, boxes[i], options);
+  constexpr std::size_t together = 256;  // what they remember is a few hundred MB at most
+  for (std::size_t first = 0; first < boxes.size(); first += together) {
+    const std::size_t n = std::min(together, boxes.size() - first);
+    integrate_together(f, std::span(boxes).subspan(first, n), options, std::span(results).subspan(first, n),
+                       host);
   }
   return results;
 }
@@ -177,7 +213,7 @@ Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& op
   const Integrand integrand = chart_integrand(f, w, bins.chart);
 
   CubatureOptions coarse;
-  coarse.relative_tolerance = 1e-3;
+  coarse.relative_tolerance = f.concurrent ? 1e-3 : 1e-2;  // where a call is dear, few of a few points
   coarse.max_evaluations = 400'000;
   coarse.cells_x = grid_x;  // ten regions a bin: a region's mass is taken as uniform
   coarse.cells_y = grid_y;

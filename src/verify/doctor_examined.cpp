@@ -15,7 +15,6 @@ namespace reflectree::detail {
 namespace {
 
 constexpr std::size_t batch = 1 << 16;  // rows of one call
-constexpr std::size_t chunk = 1 << 14;  // draws of one seed
 
 Direction narrow(Vec3<double> w) { return {float(w.x), float(w.y), float(w.z)}; }
 
@@ -63,7 +62,8 @@ TargetFunction scaled(TargetFunction f, double factor) {
 }
 
 double rough_total(const TargetFunction& f, Direction wo) {
-  return reference_albedo(f, wo, {.relative_tolerance = 1e-3, .max_evaluations = 100'000}).value;
+  const double tolerance = f.concurrent ? 1e-3 : 1e-2;  // where a call is dear, few of a few points
+  return reference_albedo(f, wo, {.relative_tolerance = tolerance, .max_evaluations = 100'000}).value;
 }
 
 void integrate(const Functions& f, const DoctorOptions& options, const Host& host, ExaminedView& view) {
@@ -144,6 +144,7 @@ void keep(const Functions& f, const Drawn& drawn, ExaminedView& view) {
 
 void draw_all(const Functions& f, const DoctorOptions& options, std::uint64_t seed, const Host& host,
               ExaminedView& view) {
+  const std::size_t chunk = f.patient().concurrent ? batch / 4 : batch;  // draws of one seed
   const std::size_t bins = view.bins.boxes.size(), chunks = (options.samples + chunk - 1) / chunk;
   view.count.assign(bins, 0), view.light.assign(bins, 0), view.light2.assign(bins, 0);
   std::vector<Drawn> parts(chunks);

@@ -19,9 +19,7 @@ struct Highest {
   double value = 0;  // of t cos_i
 };
 
-Highest highest(const TargetFunction& f, Vec3<double> wo, std::span<const Vec3<double>> wi) {
-  std::vector<double> t(wi.size());
-  f.eval(wo, wi, t);
+Highest highest_of(std::span<const Vec3<double>> wi, std::span<const double> t) {
   Highest best;
   for (std::size_t i = 0; i < wi.size(); ++i) {
     if (t[i] * wi[i].z > best.value) best = {wi[i], t[i] * wi[i].z};
@@ -29,26 +27,54 @@ Highest highest(const TargetFunction& f, Vec3<double> wo, std::span<const Vec3<d
   return best;
 }
 
-Highest highest_on_grid(const TargetFunction& f, Vec3<double> wo, const HemisphereChart& chart) {
-  std::vector<Vec3<double>> points;
+Highest highest(const TargetFunction& f, Vec3<double> wo, std::span<const Vec3<double>> wi) {
+  std::vector<double> t(wi.size());
+  f.eval(wo, wi, t);
+  return highest_of(wi, t);
+}
+
+void append_grid(const HemisphereChart& chart, std::vector<Vec3<double>>& points) {
   constexpr int nx = 64, ny = 32;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
       points.push_back(chart.direction({4 * (i + 0.5) / nx, 2 * (j + 0.5) / ny}).w);
     }
   }
-  return highest(f, wo, points);
 }
 
-Highest highest_anywhere(const TargetFunction& f, Vec3<double> wo) {
+void append_anywhere(std::vector<Vec3<double>>& points) {
   constexpr std::uint32_t count = 8192;
-  std::vector<Vec3<double>> points;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double z = 1 - scrambled_sobol(i, 0, 1), phi = 2 * pi_v<double> * scrambled_sobol(i, 1, 1);
     const double r = std::sqrt(1 - z * z);
     points.push_back({r * std::cos(phi), r * std::sin(phi), z});
   }
-  Highest best = highest(f, wo, points);
+}
+
+// The same climb where a call is dear: all steps at once, and azimuths that turn. A thousandth of the height is
+// some hundredths of a lobe's width: near enough for the centre of a chart.
+Highest climbed_in_few_calls(const TargetFunction& f, Vec3<double> wo, Highest best) {
+  constexpr int azimuths = 12, steps = 40;
+  for (int round = 0; round < 60; ++round) {
+    const LocalFrame<double> frame = frame_from_normal(best.w);
+    std::vector<Vec3<double>> around;
+    for (int s = 0; s < steps; ++s) {
+      const double step = 0.1 * std::pow(0.7, s);  // down to 1e-7
+      for (int k = 0; k < azimuths; ++k) {
+        const double phi = (k + 0.37 * round + 0.5 * s) * 2 * pi_v<double> / azimuths;
+        around.push_back(normalize(best.w + step * (std::cos(phi) * frame.s + std::sin(phi) * frame.t)));
+      }
+    }
+    const Highest next = highest(f, wo, around);
+    const bool higher = next.value > best.value * (1 + 1e-3);
+    if (next.value > best.value) best = next;
+    if (!higher) break;
+  }
+  return best;
+}
+
+Highest climbed(const TargetFunction& f, Vec3<double> wo, Highest best) {
+  if (!f.concurrent) return climbed_in_few_calls(f, wo, best);
   // Climb: the best of eight neighbours; halve the step where none is higher by more than rounding.
   double step = 0.05;
   for (int round = 0; round < 200 && step > 1e-7; ++round) {
@@ -69,7 +95,16 @@ Highest highest_anywhere(const TargetFunction& f, Vec3<double> wo) {
 
 HemisphereChart choose_chart(const TargetFunction& f, Vec3<double> wo) {
   const HemisphereChart mirror({-wo.x, -wo.y, wo.z});
-  const Highest seen = highest_on_grid(f, wo, mirror), peak = highest_anywhere(f, wo);
+  std::vector<Vec3<double>> points;
+  append_grid(mirror, points);
+  const std::size_t grid = points.size();
+  append_anywhere(points);
+  std::vector<double> t(points.size());
+  f.eval(wo, points, t);
+  const auto of = [&](std::size_t from, std::size_t n) {
+    return highest_of(std::span(points).subspan(from, n), std::span(t).subspan(from, n));
+  };
+  const Highest seen = of(0, grid), peak = climbed(f, wo, of(grid, points.size() - grid));
   return peak.value > 1.5 * seen.value ? HemisphereChart(peak.w) : mirror;
 }
 
@@ -104,8 +139,9 @@ CubatureResult reference_albedo(const TargetFunction& f, Direction wo, const Ref
   CubatureOptions cubature_options;
   cubature_options.relative_tolerance = options.relative_tolerance;
   cubature_options.max_evaluations = options.max_evaluations;
-  cubature_options.cells_x = start_cells_x;
-  cubature_options.cells_y = start_cells_y;
+  const int finer = f.concurrent ? 1 : 2;  // where a call is dear, more in the first one
+  cubature_options.cells_x = finer * start_cells_x;
+  cubature_options.cells_y = finer * start_cells_y;
   CubatureBox domain = HemisphereChart::domain;
   if (options.mirror_symmetric) {
     domain.x1 *= 0.5;

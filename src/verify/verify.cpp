@@ -66,7 +66,7 @@ class Hearing {
     directions();
     trials();
     albedo();
-    once();
+    if (s_.once) once();
     physics();
     return std::move(report_);
   }
@@ -258,7 +258,9 @@ class Hearing {
   }
 
   void physics() {
-    const PhysicsReport report = measure_physics(f_, 20'000, detail::mixed_seed(o_.seed, 12));
+    const PhysicsReport report =
+        measure_physics(f_, int(std::min<std::uint64_t>(scaled_count(20'000, 2'000), 20'000)),
+                        detail::mixed_seed(o_.seed, 12));
     if (s_.packed->viewer.frame.isotropic()) {
       add(check_isotropy(report, 1e-2));
     } else {

@@ -8,6 +8,7 @@ import unittest
 import house_rules
 import layers
 import links
+import site_pages
 
 TOP = "// SPDX-License-Identifier: Apache-2.0\n#pragma once\n"
 
@@ -176,6 +177,34 @@ class DeadEnds(unittest.TestCase):
     def test_question_without_a_path(self):
         self.plant("docs/questions.md", (self.root / "docs/questions.md").read_text() + "\n## And where else?\n")
         self.assert_caught("no path answers 'And where else?'")
+
+
+class SitePages(unittest.TestCase):
+    PAGE = '<html><body><h1 id="top">A</h1><a href="other.html#end">b</a> <a href="https://example.org">c</a>%s</body></html>'
+
+    def faults(self, more: str) -> list[str]:
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "page.html").write_text(self.PAGE % more, encoding="utf-8")
+            (root / "other.html").write_text('<html><body><p id="end">d</p></body></html>', encoding="utf-8")
+            return site_pages.faults_of(root)
+
+    def test_a_sound_site(self):
+        self.assertEqual(self.faults('<a href="#top">e</a><img src="data:image/png;base64,AA==">'), [])
+
+    def test_faults(self):
+        for more, words in (('<a href="gone.html">x</a>', "gone.html leads nowhere"),
+                            ('<a href="other.html#middle">x</a>', "has no such anchor"),
+                            ('<a href="#bottom">x</a>', "has no such anchor"),
+                            ('<script src="https://example.org/x.js"></script>', "from the network"),
+                            ('<img src="gone.png">', "gone.png leads nowhere")):
+            found = self.faults(more)
+            self.assertEqual(len(found), 1, found)
+            self.assertIn(words, found[0])
+
+    def test_no_page_is_a_fault(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(len(site_pages.faults_of(pathlib.Path(folder))), 1)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,12 @@ assert pathlib.Path(rt.__file__).is_relative_to(sys.prefix), rt.__file__
 sampler = rt.Sampler(lambda wo, wi: 0.3 / (wo[:, 2] + wi[:, 2]))
 drawn = sampler.sample(rt.direction(0.8, 0.0), n=100_000, rng=1)
 assert 0.48 < np.mean(drawn.weight * (drawn.wi[:, 2] > 0.5)) < 0.49
+for call, hint in ((lambda: rt.verify("lambert", effort=0.01), "libboost-dev"),
+                   (lambda: rt.render(spp=1, defines={"size": 8}) + 1 > 0, "REFLECTREE_PYTHON_STUDIO=ON")):
+    try:  # each part is whole, or says what is missing
+        assert np.all(call())
+    except rt.Error as error:
+        assert hint in str(error), error
 print(rt.__version__)
 """
 

@@ -19,6 +19,12 @@ drawn: rt.Samples = sampler.sample([0, 0, 1], 5, rng=1)
 total: float = float(drawn.weight.sum()) + float(sampler.build_seconds or 0)
 wo, wi = rt.from_angles(0.1, 0.2, 0.3, azimuth="forward")
 rt.plot.lobe("lambert", wo)
+report: rt.VerifyReport = rt.verify(sampler, effort=0.1, progress=lambda fraction, stage: None)
+names = [check.name for check in report.checks if not check.passed]
+diagnosis = rt.doctor(eval=lambda wo, wi: wi[:, 2], sample=lambda wo, rng: (wo, wo[:, 2]), effort="quick")
+text: str = diagnosis.to_json() + repr(diagnosis.faults[0].evidence)
+picture: np.ndarray = rt.render(spp=1, defines={"size": 8})
+table: rt.Comparison = rt.compare(["lambert", "plastic"], theta_o=[0.1])
 """
 BAD = """
 import reflectree as rt
@@ -26,6 +32,7 @@ import reflectree as rt
 rt.from_angles(0.1, 0.2, 0.3)
 rt.material(3)
 rt.material("lambert").sample([0, 0, 1])
+rt.verify(sampler="lambert", effort="much")
 """
 
 
@@ -45,7 +52,7 @@ def test_programs(tmp_path):
     good = mypy(tmp_path, str(tmp_path / "good.py"))
     assert good.returncode == 0, good.stdout
     bad = mypy(tmp_path, str(tmp_path / "bad.py"))
-    assert [bad.stdout.count(f"bad.py:{line}: error") for line in (4, 5, 6)] == [1, 1, 1], bad.stdout
+    assert [bad.stdout.count(f"bad.py:{line}: error") for line in (4, 5, 6, 7)] == [1, 1, 1, 1], bad.stdout
 
 
 def test_every_name_is_documented():

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "reflectree/verify/bin_masses.hpp"
 #include "simple_samplers.hpp"
 
 namespace reflectree {
@@ -67,6 +68,25 @@ TEST(Bins, StateTheirErrorForKinksAndRims) {
 TEST(Bins, OfRossLiAtGrazingAreRight) {
   const Bins bins = equal_mass_bins(target_function(ross_li), direction_at(88));
   EXPECT_NEAR(bins.total, 0.336175, 3e-4 * 0.336175);
+}
+
+// A function to which each call is dear has bins as good, and the same masses over the same bins, in few calls.
+TEST(Bins, OfOneThreadTakeFewCalls) {
+  for (const AnyBrdf& brdf : {AnyBrdf(ross_li), AnyBrdf(rim)}) {
+    const TargetFunction f = target_function(brdf);
+    TargetFunction dear = f;
+    std::size_t calls = 0, directions = 0;
+    dear.concurrent = false;
+    dear.eval = [&](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t) {
+      ++calls, directions += wi.size();
+      f.eval(wo, wi, t);
+    };
+    const Bins bins = equal_mass_bins(f, direction_at(30)), other = equal_mass_bins(dear, direction_at(30));
+    EXPECT_EQ(bins.boxes.size(), other.boxes.size());
+    EXPECT_NEAR(bins.total, other.total, (bins.worst_error + other.worst_error + 1e-6) * bins.total);
+    EXPECT_EQ(function_masses(f, bins).mass, function_masses(dear, bins).mass);
+    EXPECT_GE(directions, 5000 * calls) << calls;
+  }
 }
 
 }  // namespace

@@ -95,9 +95,13 @@ TEST(ReferenceAlbedo, FindsANeedleOutOfThePlane) {
     const Direction d = wi - axis;
     return std::exp(-k * dot(d, d)) / wi.z;
   };
-  for (const double theta : {0., 20., 80.}) {
-    const auto a = reference_albedo(target_function(needle), direction_at(theta));
-    EXPECT_NEAR(a.value, 2 * pi_v<double> * 0.003 * 0.003, 1e-4 * a.value) << theta;
+  for (const bool concurrent : {true, false}) {  // two ways to climb
+    TargetFunction f = target_function(needle);
+    f.concurrent = concurrent;
+    for (const double theta : {0., 20., 80.}) {
+      const auto a = reference_albedo(f, direction_at(theta));
+      EXPECT_NEAR(a.value, 2 * pi_v<double> * 0.003 * 0.003, 1e-4 * a.value) << theta;
+    }
   }
 }
 

@@ -17,14 +17,19 @@ from __future__ import annotations
 from . import _core, plot
 from ._arrays import Samples
 from ._brdf import Brdf, function, load, material, members, models
+from ._checks import Check, Figure
 from ._conventions import direction, from_angles, function_of_angles, mitsuba_order, swapped, without_cosine
+from ._doctor import Diagnosis, Evidence, Finding, causes, doctor, samplers
 from ._error import BuildWarning, Error
 from ._sampler import BuildReport, Sampler, load_sampler
+from ._studio import Comparison, RenderWarning, compare, render
+from ._verify import VerifyReport, verify
 
 __version__: str = _core.version
 
 __all__ = [
-    "Brdf", "BuildReport", "BuildWarning", "Error", "Sampler", "Samples", "direction", "from_angles", "function",
-    "function_of_angles", "load", "load_sampler", "material", "members", "mitsuba_order", "models", "plot", "swapped",
-    "without_cosine",
+    "Brdf", "BuildReport", "BuildWarning", "Check", "Comparison", "Diagnosis", "Error", "Evidence", "Figure", "Finding",
+    "RenderWarning", "Sampler", "Samples", "VerifyReport", "causes", "compare", "direction", "doctor", "from_angles",
+    "function", "function_of_angles", "load", "load_sampler", "material", "members", "mitsuba_order", "models", "plot",
+    "render", "samplers", "swapped", "verify", "without_cosine",
 ]

@@ -135,3 +135,16 @@ def as_count(value: Any, name: str) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < 0:
         raise Error(f"{value!r} is no number of directions", name, "give a whole number, 0 or more")
     return int(value)
+
+
+def as_whole(value: Any, name: str) -> int:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not 0 <= value < 2**63:
+        raise Error(f"{value!r} is no whole number from 0 to 2^63", name, "give one")
+    return int(value)
+
+
+def as_number(value: Any, name: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise Error(f"{value!r} is no number", name, "give one") from error

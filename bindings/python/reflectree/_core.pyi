@@ -5,6 +5,7 @@ from ._arrays import Array
 
 version: str
 unnamed: str
+has_judges: bool
 
 def list_members(path: str) -> List[str]: ...
 def model_names() -> List[str]: ...
@@ -14,6 +15,7 @@ class Brdf:
     name: str
     channels: int
     has_channel_axis: bool
+    is_function: bool
     calls: Tuple[int, int]
     @staticmethod
     def from_text(text: str, beside: str) -> Brdf: ...
@@ -88,3 +90,57 @@ class Sampler:
     def albedo(self, wo: Array, out: Array) -> None: ...
     def expected_trials(self, wo: Array, out: Array) -> None: ...
     def leaves(self, one_shot: bool, x: float, y: float, z: float) -> List[Any]: ...
+
+# Where has_judges is true.
+
+class Diagnosis:
+    subject: str
+    conventions: List[str]
+    healthy: bool
+    checks: List[Any]
+    findings: List[Any]
+    figures: List[Any]
+
+def verify(
+    sampler: Sampler,
+    *,
+    effort: float,
+    seed: int,
+    threads: int,
+    progress: Optional[Callable[[float, str], Any]],
+) -> Dict[str, Any]: ...
+def diagnose_functions(
+    eval: Callable[[Array, Array], Array],
+    sample: Callable[[Array, int], Array],
+    pdf: Optional[Callable[[Array, Array], Array]],
+    *,
+    channels: int,
+    name: str,
+    eval_returns: str,
+    sample_returns: str,
+    effort: str,
+    seed: int,
+    progress: Optional[Callable[[float, str], Any]],
+) -> Tuple[Diagnosis, int, int]: ...
+def diagnose_sampler(
+    sampler: Sampler,
+    *,
+    mode: str,
+    name: str,
+    effort: str,
+    seed: int,
+    threads: int,
+    progress: Optional[Callable[[float, str], Any]],
+) -> Diagnosis: ...
+def diagnose_peer(
+    brdf: Brdf,
+    *,
+    sampler: str,
+    name: str,
+    effort: str,
+    seed: int,
+    threads: int,
+    progress: Optional[Callable[[float, str], Any]],
+) -> Diagnosis: ...
+def doctor_causes() -> Dict[str, str]: ...
+def sampler_names() -> Dict[str, str]: ...

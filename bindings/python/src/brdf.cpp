@@ -40,7 +40,9 @@ void bind_brdf(nb::module_& m) {
             const nb::gil_scoped_release no_gil;
             const FilePlaces places{"", beside};
             PyBrdf brdf{open_brdf(text, places)};
-            if (!names_sampler_file(text, places)) brdf.lanes = lane_function(parse_material(text, places));
+            if (names_sampler_file(text, places)) return brdf;
+            brdf.material = parse_material(text, places);
+            brdf.lanes = lane_function(brdf.material);
             return brdf;
           },
           nb::arg("text"), nb::arg("beside"))
@@ -61,6 +63,7 @@ void bind_brdf(nb::module_& m) {
           nb::arg("function"), nb::arg("name"), nb::arg("double_precision"))
       .def_prop_ro("name", [](const PyBrdf& b) { return b.f.traits().name; })
       .def_prop_ro("channels", [](const PyBrdf& b) { return b.f.channels(); })
+      .def_prop_ro("is_function", [](const PyBrdf& b) { return b.function.has_value(); })
       .def_prop_ro("has_channel_axis",
                    [](const PyBrdf& b) { return !b.function || b.function->has_channel_axis(); })
       .def_prop_ro("calls",

@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "python_brdf.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "reflectree/simd/lane_function.hpp"
 
 namespace reflectree::python {
@@ -15,6 +16,7 @@ struct PyBrdf {
   std::optional<PythonBrdf> function = std::nullopt;  // where it is one of Python
   FunctionOwner owner = {};
   std::shared_ptr<const LaneFunction> lanes = nullptr;  // where it is one model
+  Material material = {};                               // where it is made of its text
 
   // Directions per call, and per piece of a long call. A function of Python wants few calls.
   std::size_t batch() const { return function ? python_batch : 512; }

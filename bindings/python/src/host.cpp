@@ -29,7 +29,7 @@ struct Told {
   Threads threads;
   nb::object progress;
   std::string stage;
-  float fraction = 0;
+  std::atomic<float> fraction{0};  // helpers tell it, too
   std::thread::id caller = std::this_thread::get_id();
   Clock::time_point looked = Clock::now(), shown = {};
   std::atomic<bool> stopped{false};  // helpers see it
@@ -40,7 +40,7 @@ struct Told {
     if (!now && Clock::now() - shown < std::chrono::milliseconds(50)) return;
     shown = Clock::now();
     const nb::gil_scoped_acquire gil;
-    call_or_stop([&] { progress(fraction, stage); });
+    call_or_stop([&] { progress(fraction.load(), stage); });
   }
   // Python runs the handlers of signals in its main thread alone.
   bool cancelled() {

@@ -17,6 +17,18 @@ namespace reflectree::python {
 PySampler::PySampler(PyBrdf of, SamplerData the_data)
     : brdf(std::move(of)), data(std::move(the_data)), sampler(make_sampler(brdf.f, data)) {}
 
+void densities_into(const PySampler& s, bool one_shot, std::span<const Direction> wo,
+                    std::span<const Direction> wi, std::span<const float> values, std::span<float> out) {
+  const auto channels = std::size_t(s.brdf.f.channels());
+  const Target& target = s.sampler.exact.packed().target;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const float albedo = one_shot ? 0 : s.sampler.exact.albedo(wo[k]);
+    out[k] = one_shot     ? s.sampler.one_shot.pdf(wo[k], wi[k])
+             : albedo > 0 ? target(&values[k * channels], int(channels)) / albedo * max(wi[k].z, 0.f)
+                          : 0;
+  }
+}
+
 namespace {
 
 FunctionOwner& owner_of(PySampler& s) { return s.brdf.owner; }
@@ -122,7 +134,6 @@ void eval_pdf_into(const PySampler& s, bool one_shot, const Input& wo, const Inp
   if (f) f_rows.emplace(*f, width_of(s.brdf), "out");
   if (pdf) pdf_rows.emplace(*pdf, 0, "out");
   const auto channels = std::size_t(s.brdf.f.channels());
-  const Target& target = s.sampler.exact.packed().target;
   std::vector<Direction> o, i;
   std::vector<float> values, densities;
   in_pieces(f ? f_rows->size() : pdf_rows->size(), s.brdf.piece(), [&](std::size_t first, std::size_t count) {
@@ -130,12 +141,7 @@ void eval_pdf_into(const PySampler& s, bool one_shot, const Input& wo, const Inp
     read_directions(wo_rows, first, o);
     read_directions(wi_rows, first, i);
     if (f || !one_shot) s.brdf.f.eval(o, i, values);
-    for (std::size_t k = 0; pdf && k < count; ++k) {
-      const float albedo = one_shot ? 0 : s.sampler.exact.albedo(o[k]);
-      densities[k] = one_shot     ? s.sampler.one_shot.pdf(o[k], i[k])
-                     : albedo > 0 ? target(&values[k * channels], int(channels)) / albedo * max(i[k].z, 0.f)
-                                  : 0;
-    }
+    if (pdf) densities_into(s, one_shot, o, i, values, densities);
     for (std::size_t k = 0; cosine && k < values.size(); ++k) values[k] *= max(i[k / channels].z, 0.f);
     if (f) f_rows->write(first, std::span<const float>(values));
     if (pdf) pdf_rows->write(first, std::span<const float>(densities));

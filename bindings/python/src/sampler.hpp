@@ -16,4 +16,8 @@ struct PySampler {
   Sampler<AnyBrdf> sampler;
 };
 
+// Densities of a mode per solid angle at pairs, from the values of f there, which one-shot mode does not read.
+void densities_into(const PySampler& s, bool one_shot, std::span<const Direction> wo,
+                    std::span<const Direction> wi, std::span<const float> values, std::span<float> out);
+
 }  // namespace reflectree::python

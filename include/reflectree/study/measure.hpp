@@ -23,6 +23,13 @@ struct StudyOptions {
   std::uint64_t seed = 1;
   friend bool operator==(const StudyOptions&, const StudyOptions&) = default;
 };
+// Fewer samples: seconds for each material and sampler.
+inline StudyOptions quick_study() {
+  StudyOptions o;
+  o.samples = 1U << 13U, o.round_seconds = 5e-4, o.curve_repeats = 8, o.cubature_evaluations = 200'000;
+  o.curve_samples = 256;
+  return o;
+}
 
 // One sampler at one theta_o. "No sample" counts as weight 0.
 struct StudyCell {

@@ -25,7 +25,8 @@ struct Suspect {
   std::function<std::optional<Direction>(Direction wo, double u1, double u2)> point;
   std::function<std::optional<Vec2<double>>(Direction wo, Direction wi)> invert;
   std::function<std::optional<Direction>(Direction wo, Pcg32& u)> propose;
-  // One trial of exact mode with its unbiased weight, channel by channel; zeros for none.
+  // One trial of exact mode with its unbiased weight, channel by channel; zeros for none. Empty: there is no
+  // such way in.
   std::function<void(Direction wo, Pcg32& u, std::span<float> weights)> once;
   // Of a family: f is its member there.
   std::optional<AnyFamily> family = {};
