@@ -20,11 +20,12 @@ from ._brdf import Brdf, function, load, material, members, models
 from ._conventions import direction, from_angles, function_of_angles, mitsuba_order, swapped, without_cosine
 from ._error import BuildWarning, Error
 from ._sampler import BuildReport, Sampler, load_sampler
+from ._tables import Tables
 
 __version__: str = _core.version
 
 __all__ = [
-    "Brdf", "BuildReport", "BuildWarning", "Error", "Sampler", "Samples", "direction", "from_angles", "function",
+    "Brdf", "BuildReport", "BuildWarning", "Error", "Sampler", "Samples", "Tables", "direction", "from_angles", "function",
     "function_of_angles", "load", "load_sampler", "material", "members", "mitsuba_order", "models", "plot", "swapped",
     "without_cosine",
 ]

@@ -281,6 +281,7 @@ void bind_sampler(nb::module_& m) {
             return nb::cast(leaves_at(s, one_shot, {x, y, z}));
           },
           nb::arg("one_shot"), nb::arg("x"), nb::arg("y"), nb::arg("z"))
+      .def("tables", &tables_of, nb::arg("one_shot"))
       .def_prop_ro("report", &report_of)
       .def_prop_ro("material", [](const PySampler& s) { return s.data.material; })
       .def_prop_ro("domain", [](const PySampler& s) { return std::string(name_of(s.data.domain.kind)); })

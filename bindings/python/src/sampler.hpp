@@ -16,4 +16,7 @@ struct PySampler {
   Sampler<AnyBrdf> sampler;
 };
 
+// The run-time arrays of a mode, as bytes by name.
+nb::dict tables_of(const PySampler& s, bool one_shot);
+
 }  // namespace reflectree::python
