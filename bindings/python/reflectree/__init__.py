@@ -23,13 +23,14 @@ from ._doctor import Diagnosis, Evidence, Finding, causes, doctor, samplers
 from ._error import BuildWarning, Error
 from ._sampler import BuildReport, Sampler, load_sampler
 from ._studio import Comparison, RenderWarning, compare, render
+from ._tables import Tables
 from ._verify import VerifyReport, verify
 
 __version__: str = _core.version
 
 __all__ = [
-    "Brdf", "BuildReport", "BuildWarning", "Check", "Comparison", "Diagnosis", "Error", "Evidence", "Figure", "Finding",
-    "RenderWarning", "Sampler", "Samples", "VerifyReport", "causes", "compare", "direction", "doctor", "from_angles",
-    "function", "function_of_angles", "load", "load_sampler", "material", "members", "mitsuba_order", "models", "plot",
-    "render", "samplers", "swapped", "verify", "without_cosine",
+    "Brdf", "BuildReport", "BuildWarning", "Check", "Comparison", "Diagnosis", "Error", "Evidence", "Figure",
+    "Finding", "RenderWarning", "Sampler", "Samples", "Tables", "VerifyReport", "causes", "compare", "direction",
+    "doctor", "from_angles", "function", "function_of_angles", "load", "load_sampler", "material", "members",
+    "mitsuba_order", "models", "plot", "render", "samplers", "swapped", "verify", "without_cosine",
 ]

@@ -17,6 +17,7 @@ from ._arrays import (Array, Rng, Samples, as_count, as_output, as_vectors, comm
 from ._brdf import Brdf, BrdfLike, as_brdf
 from ._error import BuildWarning, Error
 from ._progress import Progress, opened
+from ._tables import Tables, tables_of
 
 MODES = ("exact", "one-shot")
 
@@ -233,6 +234,10 @@ class Sampler:
     def isotropic(self) -> bool:
         """Whether the builder found that f depends on azimuths by their difference alone."""
         return bool(self._core.isotropic)
+
+    def tables(self, mode: str = "one-shot") -> Tables:
+        """The run-time arrays of a mode, read-only: what runtimes in other array languages sample from."""
+        return tables_of(self._core, _is_one_shot(mode))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes a sampler file, whole or not at all. The function is not inside: :func:`load_sampler` finds a

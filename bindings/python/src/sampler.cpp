@@ -287,6 +287,9 @@ void bind_sampler(nb::module_& m) {
             return nb::cast(leaves_at(s, one_shot, {x, y, z}));
           },
           nb::arg("one_shot"), nb::arg("x"), nb::arg("y"), nb::arg("z"))
+      .def("tables", &tables_of, nb::arg("one_shot"))
+      .def("draw_one", &draw_one, nb::arg("wo"), nb::arg("u1"), nb::arg("u2"))
+      .def("density_one", &density_one, nb::arg("wo"), nb::arg("wi"))
       .def_prop_ro("report", &report_of)
       .def_prop_ro("material", [](const PySampler& s) { return s.data.material; })
       .def_prop_ro("domain", [](const PySampler& s) { return std::string(name_of(s.data.domain.kind)); })

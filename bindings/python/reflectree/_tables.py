@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The run-time arrays of a sampler, for whoever samples from them in an array language of his own."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, NamedTuple
+
+import numpy as np
+
+from ._arrays import Array
+
+# Layouts of PackedSlab, PackedLeaf, DescentNode, AlbedoPiece and PackedAlbedo::Segment, and of the albedo's table.
+SLAB = np.dtype([("first", "<u4"), ("count", "<u4"), ("first_node", "<u4"), ("bucket", "<u4"), ("volume", "<f4")])
+LEAF = np.dtype([("threshold", "<u4"), ("height", "<f4"), ("alias", "<u2"), ("x", "<u2"), ("y", "<u2"),
+                 ("level_x", "u1"), ("level_y", "u1"), ("slope_x", "i1"), ("slope_y", "i1")], align=True)
+NODE = np.dtype([("lower", "<f4"), ("lower_leaves_split_x", "<u4")])
+PIECE = np.dtype([("base", "<f4"), ("slope", "<f4")])
+SEGMENT = np.dtype([("phi_o", "<f4"), ("rows_per_radian", "<f4"), ("first", "<u4"), ("last", "<u4")])
+
+
+class Tables(NamedTuple):
+    """What a sampler knows of one mode, as it is sampled from. Read-only.
+
+    The C99 runtime of one file, ``runtime/reflectree_sample.h``, says what is done with each array; its layout is
+    the same but for cells, which are apart here.
+
+    Attributes
+    ----------
+    domain : str
+        The map from the square to the directions wi.
+    half : bool
+        Whether the square is half of one, y in [0, 1], and a coin decides the sign of wi.y.
+    exponent, stretch : float
+        Of the domains ``stretched`` and ``slope_star``.
+    symmetry : str
+        ``"isotropic"``; or what leaves an anisotropic function as it is, which folds the viewer's azimuth.
+    cos_axis, sin_axis : float
+        Of the azimuth of an anisotropic function's own axis.
+    turns : bool
+        Whether the domain lives in the frame where wo has no y.
+    scale : float
+        Of the target, and so of the albedo.
+    borders : array of float32
+        Of the slabs of an isotropic function: cosines of theta_o, ascending, the last one 2. Else empty.
+    partition_axis, partition_split : arrays
+        The slabs in preorder: 0 splits theta_o, 1 phi_o (radians), 255 is a slab; the splits of inner nodes.
+    slabs, leaves, nodes : structured arrays
+        Trees: of isotropic functions in the order of ``borders``, else in that of the partition. A leaf has its
+        bucket of the alias table, its height (density or majorant per share of the square), cell and slopes / 128.
+        Nodes, in preorder, are there in one-shot mode alone; the top bit of ``lower_leaves_split_x`` says whether
+        x is split.
+    albedo_borders, albedo_pieces, albedo_segments : arrays
+        Lines over the cosine; of anisotropic functions row after row, whose azimuths the segments tell.
+    """
+
+    domain: str
+    half: bool
+    exponent: float
+    stretch: float
+    symmetry: str
+    cos_axis: float
+    sin_axis: float
+    turns: bool
+    scale: float
+    borders: Array
+    partition_axis: Array
+    partition_split: Array
+    slabs: Array
+    leaves: Array
+    nodes: Array
+    albedo_borders: Array
+    albedo_pieces: Array
+    albedo_segments: Array
+
+
+TYPES: Dict[str, Any] = {
+    "borders": "<f4", "partition_axis": "u1", "partition_split": "<f4", "slabs": SLAB, "leaves": LEAF, "nodes": NODE,
+    "albedo_borders": "<f4", "albedo_pieces": PIECE, "albedo_segments": SEGMENT}
+
+
+def tables_of(core: Any, one_shot: bool) -> Tables:
+    found: Dict[str, Any] = core.tables(one_shot)
+    arrays: Dict[str, Any] = {name: np.frombuffer(found[name], dtype) for name, dtype in TYPES.items()}
+    return Tables(**{**found, **arrays})

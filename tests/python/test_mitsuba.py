@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The BSDF `reflectree` inside Mitsuba 3, judged by Mitsuba's own chi-square test. Skipped where Mitsuba is not
+installed; LLVM variants where Dr.Jit finds no LLVM that it can use (DRJIT_LIBLLVM_PATH)."""
+
+import gc
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+mi = pytest.importorskip("mitsuba", reason="Mitsuba 3 is not installed: its plug-in is not tested (pip install mitsuba)")
+import drjit as dr  # noqa: E402
+
+import reflectree as rt  # noqa: E402
+
+# An LLVM that Dr.Jit cannot use ends the process, so that another one has to ask.
+PROBE = """import drjit as dr, mitsuba as mi; mi.set_variant('llvm_ad_rgb')
+dr.eval(mi.load_dict({'type': 'principled'}).eval_pdf(mi.BSDFContext(), dr.zeros(mi.SurfaceInteraction3f, 64),
+        dr.minimum(mi.Vector3f(dr.arange(mi.Float, 64) * 0.01, 0, 1), 0.5)))"""
+HAS_LLVM = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, check=False).returncode == 0
+needs_llvm = pytest.mark.skipif(not HAS_LLVM, reason="no LLVM that Dr.Jit can use; set DRJIT_LIBLLVM_PATH")
+needs_data = pytest.mark.skipif("REFLECTREE_DATA" not in os.environ,
+                                reason="REFLECTREE_DATA names no folder of measured files")
+
+mi.set_variant("scalar_rgb")
+import reflectree.mitsuba  # noqa: E402
+
+PRINCIPLED = {"type": "principled", "roughness": 0.6, "base_color": {"type": "rgb", "value": [0.7, 0.3, 0.1]}}
+
+
+def variant(name):
+    mi.set_variant(name)
+    mi.set_log_level(mi.LogLevel.Error)
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return str(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture(autouse=True)
+def nothing_left():
+    yield
+    gc.collect()  # Dr.Jit compiles every BSDF that exists
+
+
+@pytest.fixture
+def llvm():
+    variant("llvm_ad_rgb")
+
+
+def direction(degrees, azimuth=37):
+    return rt.direction(np.radians(float(degrees)), np.radians(float(azimuth))).astype(float).tolist()
+
+
+def interactions(n, wi=None):
+    """n viewers above the surface, or one, and n times three uniforms."""
+    rng = np.random.default_rng(1)
+    known = rt.direction(np.arccos(rng.uniform(0.05, 1, n)), rng.uniform(0, 6.28, n)).astype(np.float32)
+    si = dr.zeros(mi.SurfaceInteraction3f, n)
+    si.wi = mi.Vector3f(wi) if wi else mi.Vector3f(*(mi.Float(np.ascontiguousarray(known[:, k])) for k in range(3)))
+    si.sh_frame = mi.Frame3f(mi.Vector3f(0, 0, 1))
+    u = rng.random((3, n), dtype=np.float32)
+    return si, mi.Float(u[0]), mi.Point2f(mi.Float(u[1]), mi.Float(u[2]))
+
+
+def chi2(description, degrees, count=1):
+    from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+
+    sample, pdf = BSDFAdapter(description["type"], description, wi=direction(degrees))
+    test = ChiSquareTest(SphericalDomain(), sample, pdf, sample_dim=3, sample_count=300_000)
+    return test.run(test_count=count, quiet=True)
+
+
+def eval_alone():
+    class EvalAlone(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            self.m_components = [mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide]
+            self.m_flags = self.m_components[0]
+
+        def eval(self, context, si, wo, active=True):
+            value = mi.Color3f(1, 0.7, 0.4) * (0.3 / (si.wi.z + wo.z) * wo.z)
+            return dr.select(active & (si.wi.z > 0) & (wo.z > 0), value, 0)
+
+    mi.register_bsdf("eval_alone", lambda props: EvalAlone(props))
+    return {"type": "eval_alone"}
+
+
+WRAPPED = [
+    PRINCIPLED,
+    {"type": "roughplastic", "alpha": 0.3},
+    {"type": "roughconductor", "distribution": "ggx", "alpha_u": 0.3, "alpha_v": 0.5},
+    "eval alone",
+]
+
+
+@needs_llvm
+@pytest.mark.parametrize("nested", WRAPPED, ids=str)
+def test_mitsubas_own_judge(llvm, cache, nested):
+    nested = eval_alone() if nested == "eval alone" else nested
+    for how in ({}, {"uniforms": "monotone"}, {"mode": "exact"}):
+        for degrees in (10, 50, 75):
+            assert chi2({"type": "reflectree", "nested": nested, "cache": cache, **how}, degrees, 9 * len(WRAPPED))
+
+
+@needs_llvm
+@needs_data
+def test_measured(llvm, cache):
+    path = os.path.join(os.environ["REFLECTREE_DATA"], "rgl", "paper_white_rgb.bsdf")
+    assert chi2({"type": "reflectree", "nested": {"type": "measured", "filename": path}, "cache": cache}, 40)
+
+
+@needs_llvm
+@pytest.mark.parametrize("fault", ["slopes", "alias"])
+def test_twin_with_a_planted_fault(llvm, cache, fault, monkeypatch):
+    from reflectree import _drjit
+
+    if fault == "slopes":
+        monkeypatch.setattr(_drjit, "_linear", lambda dr, slope, u: u)
+    else:
+        monkeypatch.setattr(_drjit.Forest, "choose", lambda self, slab, word, active: slab.x + dr.mul_hi(word, slab.y))
+    assert not chi2({"type": "reflectree", "nested": PRINCIPLED, "cache": cache}, 50)
+
+
+@needs_llvm
+@pytest.mark.parametrize("name", ["llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral"])
+def test_values_densities_and_weights_agree(cache, name):
+    variant(name)
+    nested = mi.load_dict(PRINCIPLED)
+    bsdf = mi.load_dict({"type": "reflectree", "nested": PRINCIPLED, "cache": cache})
+    n, context = 20000, mi.BSDFContext()
+    si, u1, u2 = interactions(n)
+    if mi.is_spectral:
+        si.wavelengths = type(si.wavelengths)([450, 520, 590, 660])
+    drawn, weight = bsdf.sample(context, si, u1, u2)
+    values, pdf = bsdf.eval_pdf(context, si, drawn.wo)
+    assert dr.all(drawn.pdf > 0)
+    assert np.quantile(np.abs(np.array(pdf / drawn.pdf) - 1), 0.99) < 1e-3
+    assert dr.allclose(values, nested.eval(context, si, drawn.wo))
+    assert dr.allclose(weight * drawn.pdf, values, rtol=1e-4, atol=1e-6)
+    weight = np.array(weight).reshape(-1, n)
+    assert np.all(weight.std(axis=1) < 0.2 * weight.mean(axis=1) + 0.2)
+    down = mi.Vector3f(drawn.wo.x, drawn.wo.y, -drawn.wo.z)
+    assert dr.all(bsdf.pdf(context, si, down) == 0)
+    si.wi = mi.Vector3f(si.wi.x, si.wi.y, -si.wi.z)
+    drawn, weight = bsdf.sample(context, si, u1, u2)
+    assert dr.all(drawn.pdf == 0) and dr.all(weight == 0, axis=None)
+    only_diffuse = mi.BSDFContext()
+    only_diffuse.type_mask = int(mi.BSDFFlags.DiffuseReflection)
+    assert dr.all(bsdf.eval(only_diffuse, si, drawn.wo) == 0, axis=None)
+
+
+@pytest.mark.parametrize("nested, sentence", [
+    ({"type": "conductor"}, "mirror-like"),
+    ({"type": "plastic"}, "mirror-like"),
+    ({"type": "roughdielectric"}, "transmits"),
+    ({"type": "principled", "spec_trans": 0.5}, "transmits"),
+    ({"type": "twosided", "inside": {"type": "diffuse"}}, "twosided around"),
+    ({"type": "diffuse", "reflectance": {"type": "checkerboard"}}, "vary over the surface"),
+], ids=lambda x: x["type"] if isinstance(x, dict) else "")
+@pytest.mark.parametrize("name", ["scalar_rgb", pytest.param("llvm_ad_rgb", marks=needs_llvm)])
+def test_what_cannot_be_wrapped_is_refused(name, nested, sentence):
+    variant(name)
+    with pytest.raises(RuntimeError, match=sentence):
+        mi.load_dict({"type": "reflectree", "nested": nested, "cache": "none"})
+
+
+@pytest.mark.parametrize("given, sentence", [
+    ({}, "0 functions"),
+    ({"material": "lambert", "file": "x.bsdf"}, "2 functions"),
+    ({"material": "nix"}, "unknown model"),
+    ({"material": "lambert", "roughness": 0.5}, "no parameter 'roughness'"),
+    ({"material": "lambert", "uniforms": "some"}, "uniforms 'some' is none"),
+    ({"material": "lambert", "mode": "exact"}, "exact mode is there for nested"),
+    ({"sampler": "nowhere.rfl"}, "nowhere.rfl"),
+])
+def test_bad_parameters(given, sentence):
+    variant("scalar_rgb")
+    with pytest.raises(RuntimeError, match=sentence):
+        mi.load_dict({"type": "reflectree", **given})
+
+
+@needs_llvm
+def test_samplers_are_kept_and_found(llvm, tmp_path):
+    def load(nested):
+        return mi.load_dict({"type": "reflectree", "nested": nested, "cache": str(tmp_path)})
+
+    assert load(PRINCIPLED).sampler.build_seconds is not None
+    assert load(PRINCIPLED).sampler.build_seconds is None
+    (path,) = tmp_path.iterdir()
+    assert load({**PRINCIPLED, "roughness": 0.61}).sampler.build_seconds is not None
+    assert len(list(tmp_path.iterdir())) == 2
+    path.write_bytes(path.read_bytes()[:-20])
+    assert load(PRINCIPLED).sampler.build_seconds is not None
+    assert load(PRINCIPLED).sampler.build_seconds is None
+    # A sampler file by its name, for the BSDF that it was built for and for no other.
+    named = {"type": "reflectree", "sampler": str(path)}
+    assert mi.load_dict({**named, "nested": PRINCIPLED}).sampler.build_seconds is None
+    with pytest.raises(RuntimeError, match="another BRDF"):
+        mi.load_dict({**named, "nested": {"type": "diffuse"}})
+
+
+@needs_llvm
+def test_xml(llvm, cache):
+    bsdf = mi.load_string(f"""<bsdf version="3.0.0" type="twosided"><bsdf type="reflectree">
+        <string name="cache" value="{cache}"/>
+        <bsdf type="principled"><float name="roughness" value="0.6"/></bsdf></bsdf></bsdf>""")
+    assert "Reflectree" in str(bsdf)
+
+
+def ball(bsdf, pixels=24):
+    return mi.load_dict({
+        "type": "scene", "integrator": {"type": "path", "max_depth": 3},
+        "sensor": {"type": "perspective", "fov": 30, "to_world": mi.ScalarTransform4f().look_at(
+            [0, 4, 1.5], [0, 0, 0], [0, 0, 1]), "film": {"type": "hdrfilm", "width": pixels, "height": pixels,
+                                                         "rfilter": {"type": "box"}}},
+        "sky": {"type": "constant", "radiance": 0.3},
+        "lamp": {"type": "sphere", "center": [3, 3, 3], "emitter": {"type": "area", "radiance": 8.0}},
+        "ball": {"type": "sphere", "bsdf": bsdf},
+    })
+
+
+def mean_z2(a, b):
+    return np.mean(((a.mean(axis=0) - b.mean(axis=0)) ** 2 / (a.var(axis=0) + b.var(axis=0) + 1e-12) * (len(a) - 1)))
+
+
+def pictures(bsdf, first_seed, count=24, spp=16):
+    scene = ball(bsdf)
+    rendered = np.stack([np.array(mi.render(scene, spp=spp, seed=first_seed + k)) for k in range(count)])
+    return rendered.reshape(count, 6, 4, 6, 4, 3).mean(axis=(2, 4))
+
+
+@pytest.mark.parametrize("name", ["scalar_rgb", pytest.param("llvm_ad_rgb", marks=needs_llvm)])
+def test_pictures_are_mitsubas(name, cache):
+    variant("llvm_ad_rgb" if HAS_LLVM else name)
+    nested = {"type": "roughconductor", "alpha": 0.3}
+    mine = {"type": "reflectree", "nested": nested, "cache": cache}
+    mi.load_dict(mine)  # builds
+    variant(name)
+    few = {"count": 12, "spp": 1} if name == "scalar_rgb" else {}
+    theirs, ours = pictures(nested, 1, **few), pictures(mine, 1001, **few)
+    assert mean_z2(theirs, ours) < 2
+    assert mean_z2(theirs * 1.3 if few else theirs * 1.05, ours) > 2  # the twin
+
+
+@needs_llvm
+def test_materials_of_ours(llvm):
+    material = {"type": "reflectree", "material": "0.5*lambert + 0.5*ggx:alpha=0.3"}
+    si, u1, u2 = interactions(5000)
+    bsdf = mi.load_dict(material)
+    drawn, weight = bsdf.sample(mi.BSDFContext(), si, u1, u2)
+    wo, wi = (np.stack([np.array(w[k]) for k in range(3)], axis=1) for w in (si.wi, drawn.wo))
+    expected = rt.material(material["material"]).eval(wo, wi, cosine=True)
+    assert np.allclose(np.array(weight * drawn.pdf).T, expected, rtol=1e-3, atol=1e-5)
+    with pytest.raises(RuntimeError) as caught:
+        mi.render(ball(material), spp=1)
+    chain, error = [], caught.value
+    while error:
+        chain.append(str(error))
+        error = error.__cause__ or error.__context__
+    assert any("reflectree.mitsuba.evaluated()" in text for text in chain)
+
+
+@needs_llvm
+def test_pictures_of_materials_of_ours(llvm):
+    with reflectree.mitsuba.evaluated():
+        ours = pictures({"type": "reflectree", "material": "lambert:rho=0.5"}, 1)
+    gc.collect()
+    assert mean_z2(pictures({"type": "diffuse", "reflectance": 0.5}, 1001), ours) < 1.5
+
+
+@needs_llvm
+def test_evaluation_is_differentiated_and_sampling_is_not(llvm, cache):
+    def gradient(bsdf, key):
+        scene = ball(bsdf, 8)
+        parameters = mi.traverse(scene)
+        key = next(k for k in parameters.keys() if k.endswith(key))
+        dr.enable_grad(parameters[key])
+        parameters.update()
+        integrator = mi.load_dict({"type": "prb", "max_depth": 3})
+        dr.backward(dr.mean(mi.render(scene, parameters, integrator=integrator, spp=512), axis=None))
+        return np.array(dr.grad(parameters[key])).reshape(-1)
+
+    theirs = gradient(PRINCIPLED, "base_color.value")
+    ours = gradient({"type": "reflectree", "nested": PRINCIPLED, "cache": cache}, "base_color.value")
+    assert np.all(theirs > 0) and np.allclose(ours, theirs, rtol=0.05)
