@@ -6,6 +6,7 @@
 
 #include "context.hpp"
 #include "reflectree/formats/open.hpp"
+#include "reflectree/sampler/certify.hpp"
 
 namespace reflectree::cli {
 
@@ -22,5 +23,11 @@ BuildOptions build_options(const Context& context, const BuildChoices& choices);
 
 // As reflectree::open_sampler, with the user's choices. Throws Error, Cancelled.
 OpenedSampler open_sampler(const Context& context, const std::string& text, const BuildChoices& choices);
+
+// Throws Error where a file cannot be written there.
+void check_output(const std::string& path);
+
+// Proves what can be proved of the subject's bounds, says what was, and packs it again. Throws Error, Cancelled.
+OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options);
 
 }  // namespace reflectree::cli

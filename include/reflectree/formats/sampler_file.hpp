@@ -16,6 +16,7 @@
 //   ANIS  of anisotropic functions: symmetry:u8 axis:f32 stretch:f32 phi_o:f32... (albedos row by row)
 //   SCAL  target.scale:f32, unless it is 1
 //   PRCH* every channel at the 64 probes: f32..., of functions without a name
+//   CERT* of every exact tree the largest ratio of a proved bound to the best value seen: f32...
 //   NOTE* sentences about what was promised and is not kept
 //
 // *: flag bit 0 marks a chunk that a reader who does not know its tag or version may skip. Lists and texts

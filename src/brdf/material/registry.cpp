@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/brdf/material/baked_tables.hpp"
 #include "reflectree/brdf/models/all.hpp"
 #include "reflectree/text/edit_distance.hpp"
@@ -23,7 +24,10 @@ ModelInfo entry() {
     if constexpr (requires(const M& m) { m.fault(); }) return model_from_values<M>(values).fault();
     return nullptr;
   };
-  info.make = [](std::span<const Rgb> values) -> AnyBrdf { return model_from_values<M>(values); };
+  // The model's own formula encloses itself.
+  info.make = [](std::span<const Rgb> values) -> AnyBrdf {
+    return Enclosed<M>(model_from_values<M>(values));
+  };
   return info;
 }
 
