@@ -36,28 +36,29 @@ Interval rounded_range(Interval r, double unit) {
   return out;
 }
 
-// A form from its parts, whose tube holds the exact result; the range shrinks to what the tube allows.
-AffineForm form_of(double middle, const Slopes& slope, double error, Interval range) {
-  AffineForm out;
-  const double radius = radius_of(slope), size = std::abs(middle) + radius;
+// Completes a form with a middle and slopes, whose tube of an error holds the exact result; the range shrinks to
+// what the tube allows.
+void complete(AffineForm& out, double radius, double error, Interval range) {
+  const double size = std::abs(out.middle) + radius;
   error += (size + error) * own;
-  if (!(error < largest_float) || !(size < largest_float)) return AffineForm::anything_in(range);
   const double reach = radius + error, slack = (size + error) * own;
-  const Interval tube{middle - reach - slack, middle + reach + slack};
-  out.range = intersection(range, tube);
-  if (!(out.range.lo <= out.range.hi)) return AffineForm::anything_in(range);
+  const Interval tube{out.middle - reach - slack, out.middle + reach + slack};
+  const bool known = error < largest_float && size < largest_float;
+  if (known) out.range = intersection(range, tube);
   // Where the tube is wider than the range the slopes say nothing.
-  if (error >= 0.5 * (out.range.hi - out.range.lo)) return AffineForm::anything_in(out.range);
-  out.middle = middle, out.slope = slope, out.error = error;
-  return out;
+  if (!known || !(out.range.lo <= out.range.hi) || error >= 0.5 * (out.range.hi - out.range.lo)) {
+    out = AffineForm::anything_in(known && out.range.lo <= out.range.hi ? out.range : range);
+    return;
+  }
+  out.error = error;
 }
 
 // The same with one rounding to float.
-AffineForm rounded_form(double middle, const Slopes& slope, double error, Interval range, double unit) {
+void round(AffineForm& out, double error, Interval range, double unit) {
   const Interval r = rounded_range(range, unit);
-  const double size =
-      std::min(r.magnitude(), (std::abs(middle) + radius_of(slope) + error) * (1 + unit + own));
-  return form_of(middle, slope, error + size * unit + flushed, r);
+  const double radius = radius_of(out.slope);
+  const double size = std::min(r.magnitude(), (std::abs(out.middle) + radius + error) * (1 + unit + own));
+  complete(out, radius, error + size * unit + flushed, r);
 }
 
 AffineForm only_range(Interval range, double unit) {
@@ -69,10 +70,11 @@ AffineForm between_lines(const AffineForm& x, double alpha, double lo, double hi
                          double unit) {
   const double slack = (std::abs(lo) + std::abs(hi) + std::abs(alpha) * x.range.magnitude()) * own;
   if (!is_known(x) || !(slack < largest_float)) return only_range(range, unit);
-  Slopes slope;
-  for (std::size_t i = 0; i < n; ++i) slope[i] = alpha * x.slope[i];
-  return rounded_form(alpha * x.middle + 0.5 * (lo + hi), slope,
-                      std::abs(alpha) * x.error + 0.5 * std::max(hi - lo, 0.) + slack, range, unit);
+  AffineForm out;
+  for (std::size_t i = 0; i < n; ++i) out.slope[i] = alpha * x.slope[i];
+  out.middle = alpha * x.middle + 0.5 * (lo + hi);
+  round(out, std::abs(alpha) * x.error + 0.5 * std::max(hi - lo, 0.) + slack, range, unit);
+  return out;
 }
 
 // A form that holds what a logarithm's form holds.
@@ -102,13 +104,12 @@ LogForm log_of(const AffineForm& x) {
 }
 
 // x with a logarithm a + sign b, that was rounded once.
-AffineForm with_log(AffineForm x, const LogForm& a, double sign, const LogForm& b, double unit) {
+void add_log(AffineForm& x, const LogForm& a, double sign, const LogForm& b, double unit) {
   // Below this the underflow counts.
-  if (!(a.error + b.error < 1) || !(x.range.lo > 1e-30)) return x;
+  if (!(a.error + b.error < 1) || !(x.range.lo > 1e-30)) return;
   x.log_middle = a.middle + sign * b.middle;
   for (std::size_t i = 0; i < n; ++i) x.log_slope[i] = a.slope[i] + sign * b.slope[i];
   x.log_error = a.error + b.error + 1.001 * unit + flushed / x.range.lo + (a.size() + b.size()) * own;
-  return x;
 }
 constexpr LogForm log_one{0, {}, 0};
 
@@ -136,21 +137,24 @@ class Settled {
 
 AffineForm product(const AffineForm& a, const AffineForm& b, Interval range, double unit) {
   if (!is_known(a) || !is_known(b)) return only_range(range, unit);
-  double middle = a.middle * b.middle, square = 0, cross = 0;
-  Slopes slope;
+  AffineForm out;
+  double middle = a.middle * b.middle, square = 0, cross = 0, radius_a = 0, radius_b = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    slope[i] = a.middle * b.slope[i] + b.middle * a.slope[i];
+    out.slope[i] = a.middle * b.slope[i] + b.middle * a.slope[i];
     // e^2 is in [0, 1]; e e' in [-1, 1].
     const double d = a.slope[i] * b.slope[i];
     middle += 0.5 * d;
     square += std::abs(d);
+    radius_a += std::abs(a.slope[i]), radius_b += std::abs(b.slope[i]);
     for (std::size_t k = 0; k < i; ++k) cross += std::abs(a.slope[i] * b.slope[k] + a.slope[k] * b.slope[i]);
   }
-  const double size_a = std::abs(a.middle) + radius_of(a.slope),
-               size_b = std::abs(b.middle) + radius_of(b.slope);
-  const double error =
-      0.5 * square + cross + a.error * size_b + b.error * size_a + a.error * b.error + size_a * size_b * own;
-  return rounded_form(middle, slope, error, range, unit);
+  out.middle = middle;
+  const double size_a = std::abs(a.middle) + radius_a, size_b = std::abs(b.middle) + radius_b;
+  round(
+      out,
+      0.5 * square + cross + a.error * size_b + b.error * size_a + a.error * b.error + size_a * size_b * own,
+      range, unit);
+  return out;
 }
 
 // 1 / x, not rounded; x does not hold 0. The secant 1/a + 1/b - x / (a b) lies above, 2 r - r^2 x with
@@ -179,10 +183,15 @@ AffineForm sum(const AffineForm& the_a, double sign, const AffineForm& the_b, do
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
   const Interval range = sign > 0 ? a.range + b.range : a.range - b.range;
   if (!is_known(a) || !is_known(b)) return only_range(range, unit);
-  Slopes slope;
-  for (std::size_t i = 0; i < n; ++i) slope[i] = a.slope[i] + sign * b.slope[i];
-  const double size = std::abs(a.middle) + std::abs(b.middle) + radius_of(a.slope) + radius_of(b.slope);
-  return rounded_form(a.middle + sign * b.middle, slope, a.error + b.error + size * own, range, unit);
+  AffineForm out;
+  double size = std::abs(a.middle) + std::abs(b.middle);
+  for (std::size_t i = 0; i < n; ++i) {
+    out.slope[i] = a.slope[i] + sign * b.slope[i];
+    size += std::abs(a.slope[i]) + std::abs(b.slope[i]);
+  }
+  out.middle = a.middle + sign * b.middle;
+  round(out, a.error + b.error + size * own, range, unit);
+  return out;
 }
 
 // A concave function on [a, b] between the secant and, parallel to it, the tangent at t (nearly so: what its
@@ -234,21 +243,24 @@ AffineForm operator-(const AffineForm& the_a) {
 AffineForm operator+(const AffineForm& a, const AffineForm& b) { return sum(a, 1, b, rounded); }
 AffineForm operator-(const AffineForm& a, const AffineForm& b) { return sum(a, -1, b, rounded); }
 AffineForm operator*(const AffineForm& a, const AffineForm& b) {
-  const AffineForm out = product(a, b, a.range * b.range, rounded);
-  return out.range.lo > 0 && a.range.lo > 0 ? with_log(out, log_of(a), 1, log_of(b), rounded) : out;
+  AffineForm out = product(a, b, a.range * b.range, rounded);
+  if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), 1, log_of(b), rounded);
+  return out;
 }
 AffineForm operator/(const AffineForm& a, const AffineForm& b) {
   const Interval range = a.range / b.range;
   if (b.range.lo <= 0 && b.range.hi >= 0) return only_range(range, rounded);
-  const AffineForm out = product(a, inverse(Settled(b).form()), range, rounded);
-  return out.range.lo > 0 && a.range.lo > 0 ? with_log(out, log_of(a), -1, log_of(b), rounded) : out;
+  AffineForm out = product(a, inverse(Settled(b).form()), range, rounded);
+  if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), -1, log_of(b), rounded);
+  return out;
 }
 
 AffineForm sqr(const AffineForm& x) {
-  const AffineForm out = product(x, x, sqr(x.range), rounded);
+  AffineForm out = product(x, x, sqr(x.range), rounded);
   if (!(x.range.lo > 0)) return out;
   const LogForm log = log_of(x);
-  return with_log(out, log, 1, log, rounded);
+  add_log(out, log, 1, log, rounded);
+  return out;
 }
 
 AffineForm sqrt(const AffineForm& the_x) {
@@ -261,12 +273,13 @@ AffineForm sqrt(const AffineForm& the_x) {
   const double alpha = 1 / (a + b);
   AffineForm inside = x;
   inside.range.lo = std::max(inside.range.lo, 0.);
-  const AffineForm out = between_lines(inside, alpha, std::min(a - alpha * a * a, b - alpha * b * b),
-                                       0.25 / alpha, range, rounded);
+  AffineForm out = between_lines(inside, alpha, std::min(a - alpha * a * a, b - alpha * b * b), 0.25 / alpha,
+                                 range, rounded);
   LogForm half = log_of(the_x);
   half.middle *= 0.5, half.error *= 0.5;
   for (double& v : half.slope) v *= 0.5;
-  return with_log(out, half, 1, log_one, rounded);
+  add_log(out, half, 1, log_one, rounded);
+  return out;
 }
 
 AffineForm abs(const AffineForm& the_x) {
@@ -309,7 +322,8 @@ AffineForm exponential(const LogForm& log, Interval exponents, Interval range, d
   const double log_alpha = std::log(alpha), slack = (1 + std::abs(log_alpha)) * alpha * own;
   AffineForm out = between_lines(x, alpha, alpha * (1 - log_alpha) - slack,
                                  std::max(ea - alpha * a, eb - alpha * b) + eb * own, range, unit);
-  return with_log(out, log, 1, log_one, unit);
+  add_log(out, log, 1, log_one, unit);
+  return out;
 }
 }  // namespace
 
@@ -404,15 +418,16 @@ AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const Aff
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
   const Interval range = hull(a.range, b.range);
   if (!is_known(a) || !is_known(b)) return AffineForm::anything_in(range);
-  Slopes slope;
-  double apart = std::abs(a.middle - b.middle);
+  AffineForm out;
+  double apart = std::abs(a.middle - b.middle), size = std::abs(a.middle) + std::abs(b.middle);
   for (std::size_t i = 0; i < n; ++i) {
-    slope[i] = 0.5 * (a.slope[i] + b.slope[i]);
+    out.slope[i] = 0.5 * (a.slope[i] + b.slope[i]);
     apart += std::abs(a.slope[i] - b.slope[i]);
+    size += std::abs(a.slope[i]) + std::abs(b.slope[i]);
   }
-  const double size = std::abs(a.middle) + std::abs(b.middle) + radius_of(a.slope) + radius_of(b.slope);
-  return form_of(0.5 * (a.middle + b.middle), slope, 0.5 * apart + std::max(a.error, b.error) + size * own,
-                 range);
+  out.middle = 0.5 * (a.middle + b.middle);
+  complete(out, radius_of(out.slope), 0.5 * apart + std::max(a.error, b.error) + size * own, range);
+  return out;
 }
 AffineForm flip_sign(const AffineForm& x, const AffineForm& s) {
   if (s.range.lo >= 0) return x;

@@ -18,7 +18,7 @@ struct CertifyOptions {
   // Where the boxes of a leaf are used up, a bound that is proved within this share counts, too; in
   // [tolerance, 1].
   double loosest = 0.05;
-  std::uint64_t boxes_per_leaf = 100000;
+  std::uint64_t boxes_per_leaf = 400000;
 };
 
 struct Certification {

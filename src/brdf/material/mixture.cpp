@@ -77,6 +77,10 @@ class SumEnclosure final : public BrdfEnclosure {
   bool whole() const {
     return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return bool(part.enclosure); });
   }
+  bool is_mirror_symmetric() const override {
+    return std::all_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return part.enclosure->is_mirror_symmetric(); });
+  }
   RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
     RgbT<AffineForm> sum;
     for (const Part& part : parts_) sum = sum + AffineForm(part.weight) * (*part.enclosure)(g);

@@ -8,10 +8,6 @@ namespace reflectree::detail {
 
 namespace {
 
-bool same(const AffineForm& a, const AffineForm& b) {
-  return a.middle == b.middle && a.slope == b.slope && a.error == b.error && a.range == b.range;
-}
-
 // The reduction of target.hpp.
 AffineForm reduced(const Target& target, const RgbT<AffineForm>& f, int channels) {
   const AffineForm scale(target.scale);
@@ -44,7 +40,10 @@ void check_value(const EnclosedPoint& enclosed, const PointValue& value) {
 }
 
 EnclosedField::EnclosedField(const AnyBrdf& f, const PackedSampler& packed)
-    : f_(f), enclosure_(f.traits().enclosure), packed_(packed) {}
+    : f_(f),
+      enclosure_(f.traits().enclosure),
+      mirror_symmetric_(enclosure_->is_mirror_symmetric()),
+      packed_(packed) {}
 
 Elevations EnclosedField::elevations(CosineRange c) const {
   const Interval longer = Interval(1) + Interval(-length_tolerance, length_tolerance);
@@ -104,11 +103,10 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
   const DomainPointT<AffineForm> lifted = lift_point(packed_.domain, wo, at.p);
   EnclosedPoint out{target_over(lifted.geometry, lifted.projected_area), std::nullopt,
                     albedo_over(c) * at.height};
-  if (packed_.domain.half()) {
+  if (packed_.domain.half() && !mirror_symmetric_) {
     ShadingGeometry<AffineForm> g = lifted.geometry;
     g.wi.y = -g.wi.y, g.wh.y = -g.wh.y;
-    const AffineForm mirrored = target_over(g, lifted.projected_area);
-    if (!same(mirrored, out.target)) out.mirrored = mirrored;
+    out.mirrored = target_over(g, lifted.projected_area);
   }
   return out;
 }

@@ -29,7 +29,7 @@ struct Elevations {
 };
 
 struct EnclosedPoint {
-  // T for both signs of wi.y: the second is missing where a square tells them apart, or where both agree.
+  // T for both signs of wi.y: the second is missing where a square tells them apart, or f does not.
   AffineForm target;
   std::optional<AffineForm> mirrored;
   AffineForm unit;  // albedo q: T may reach majorant times it
@@ -57,6 +57,7 @@ class EnclosedField {
 
   const AnyBrdf& f_;
   std::shared_ptr<const BrdfEnclosure> enclosure_;
+  bool mirror_symmetric_;
   const PackedSampler& packed_;
 };
 

@@ -38,6 +38,7 @@ class Proof {
   LeafProof run() {
     const Elevations theta = field_.elevations(cosines_);
     open({{theta.lo, 0, 0}, {theta.hi, 1, 1}});
+    look_around(boxes_.back());
     while (!boxes_.empty()) {
       if (out_.boxes >= limits_.boxes) return settle();
       ease();
@@ -66,6 +67,24 @@ class Proof {
   }
   void open(const ProofBox& box) { boxes_.push_back({box, enclose(box)}); }
 
+  // Values at corners and between, so that something was seen however quick the proof is.
+  void look_around(const OpenBox& b) {
+    for (int i = 0; i < 27; ++i) {
+      const std::array<int, ProofBox::axes> at{i % 3, i / 3 % 3, i / 9};
+      ProofPoint point;
+      for (std::size_t k = 0; k < ProofBox::axes; ++k)
+        point[k] = b.box.lo[k] + 0.5 * at[k] * (b.box.hi[k] - b.box.lo[k]);
+      see(b, point);
+    }
+    out_.bound = std::max(out_.bound, out_.seen);
+  }
+  void see(const OpenBox& b, const ProofPoint& point) {
+    const PointValue v = field_.at(point, cosines_, leaf_);
+    if (!(v.unit > 0)) return;
+    check_value(b.point, v);
+    out_.seen = std::max(out_.seen, double(v.target) / double(v.unit));
+  }
+
   // Values at the middle, and at the corner to which the difference rises.
   void look_into(const OpenBox& b) {
     const AffineForm::Slopes rise = slopes_of_difference(b.point.target, proved_bound(), b.point.unit);
@@ -75,12 +94,7 @@ class Proof {
       middle[i] = 0.5 * (b.box.lo[i] + b.box.hi[i]);
       corner[i] = along[i] > 0 ? b.box.hi[i] : b.box.lo[i];
     }
-    for (const ProofPoint& point : {middle, corner}) {
-      const PointValue v = field_.at(point, cosines_, leaf_);
-      if (!(v.unit > 0)) continue;
-      check_value(b.point, v);
-      out_.seen = std::max(out_.seen, double(v.target) / double(v.unit));
-    }
+    for (const ProofPoint& point : {middle, corner}) see(b, point);
     out_.bound = std::max(out_.bound, out_.seen * (1 + tolerance_));
   }
 
