@@ -89,9 +89,11 @@ LogForm kept_log(const AffineForm& a) { return {a.log_middle, a.log_slope, a.log
 // log x where nobody kept it, between secant and tangent; infinite error where x is not positive or spans too
 // much for lines.
 LogForm log_of(const AffineForm& x) {
-  if (is_log_known(x)) return kept_log(x);
   const double a = x.range.lo, b = x.range.hi;
-  LogForm out{0, {}, detail::infinity};
+  LogForm out = kept_log(x);
+  // About what the lines would add: a sixteenth of the square of the range's width.
+  if (is_log_known(x) && !((x.error + 0.1 * (b - a) * (b - a) / a) < 0.7 * x.log_error * a)) return out;
+  out = {0, {}, detail::infinity};
   if (!(a > 1e-35) || !(b < 8 * a) || !is_known(x)) return out;
   const double la = std::log(a), lb = std::log(b);
   const double alpha = b > a * (1 + 1e-6) ? (lb - la) / (b - a) : 2 / (a + b);
@@ -178,6 +180,41 @@ AffineForm ramp(const AffineForm& x) {
   return between_lines(x, alpha, 0, std::max(-alpha * a, b - alpha * b), range, 0);
 }
 
+bool is_slack(const AffineForm& a) { return radius_of(a.slope) == 0; }
+
+// log(a + b) = log a + log(1 + e^u), u = log b - log a, for positive a and b one of which kept its logarithm:
+// convex in u, with a second derivative of at most 1/4. Or log a, where b is a slack.
+void add_log_of_sum(AffineForm& out, const AffineForm& a, double sign, const AffineForm& b, double unit) {
+  const double slack = b.range.magnitude();
+  if (is_log_known(a) && is_slack(b) && slack < 0.1 * a.range.lo) {
+    const LogForm log{0, {}, slack / (a.range.lo - slack) * (1 + own)};
+    add_log(out, kept_log(a), 1, log, unit);
+    return;
+  }
+  if (sign < 0 || !(a.range.lo > 0) || !(b.range.lo > 0) || (!is_log_known(a) && !is_log_known(b))) return;
+  const LogForm log_a = log_of(a), log_b = log_of(b);
+  if (!(log_a.error + log_b.error < 1)) return;
+  LogForm u{log_b.middle - log_a.middle, {}, log_a.error + log_b.error};
+  for (std::size_t i = 0; i < n; ++i) u.slope[i] = log_b.slope[i] - log_a.slope[i];
+  u.error += (log_a.size() + log_b.size()) * own;
+  const double reach = radius_of(u.slope) + u.error, lo = u.middle - reach, hi = u.middle + reach;
+  if (!(reach < 4) || !(std::abs(u.middle) < 200)) return;
+  const auto f = [](double v) { return std::max(v, 0.) + std::log1p(std::exp(-std::abs(v))); };
+  const auto rise = [](double v) { return 1 / (1 + std::exp(-v)); };
+  const double alpha = reach > 1e-6 ? (f(hi) - f(lo)) / (hi - lo) : rise(u.middle);
+  // The tangent at any t lies below; its slope should be alpha.
+  const double t = std::clamp(std::log(alpha / std::max(1 - alpha, 1e-300)), lo, hi);
+  const double high = std::max(f(lo) - alpha * lo, f(hi) - alpha * hi);
+  const double low = f(t) - alpha * t - std::abs(rise(t) - alpha) * (hi - lo);
+  // Of log a + alpha u + offset the errors of log a are counted once: log a (1 - alpha) + alpha log b.
+  LogForm log{log_a.middle + alpha * u.middle + 0.5 * (low + high), {}, 0};
+  for (std::size_t i = 0; i < n; ++i) log.slope[i] = log_a.slope[i] + alpha * u.slope[i];
+  log.error = std::abs(1 - alpha) * log_a.error + std::abs(alpha) * log_b.error +
+              0.5 * std::max(high - low, 0.) +
+              (std::abs(low) + std::abs(high) + log_a.size() + 2 * u.size()) * own;
+  add_log(out, log, 1, log_one, unit);
+}
+
 AffineForm sum(const AffineForm& the_a, double sign, const AffineForm& the_b, double unit) {
   const Settled settled_a(the_a), settled_b(the_b);
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
@@ -191,6 +228,7 @@ AffineForm sum(const AffineForm& the_a, double sign, const AffineForm& the_b, do
   }
   out.middle = a.middle + sign * b.middle;
   round(out, a.error + b.error + size * own, range, unit);
+  if (out.range.lo > 0) add_log_of_sum(out, the_a, sign, the_b, unit);
   return out;
 }
 
@@ -435,6 +473,16 @@ AffineForm flip_sign(const AffineForm& x, const AffineForm& s) {
   return by_sign(s, x, -x);
 }
 
+AffineForm narrower(const AffineForm& a, const AffineForm& b) {
+  AffineForm out = b.error < a.error ? b : a;
+  const Interval range = intersection(a.range, b.range);
+  if (range.lo <= range.hi) out.range = range;
+  if (a.log_error < out.log_error)
+    out.log_middle = a.log_middle, out.log_slope = a.log_slope, out.log_error = a.log_error;
+  if (b.log_error < out.log_error)
+    out.log_middle = b.log_middle, out.log_slope = b.log_slope, out.log_error = b.log_error;
+  return out;
+}
 AffineForm widened(const AffineForm& x, double share) {
   const double more = x.range.magnitude() * share;
   AffineForm out = x;

@@ -29,8 +29,8 @@ DomainPointT<AffineForm> lifted_box(const Domain& domain, const Box& box) {
   const AffineForm theta = AffineForm::variable(0, box.lo[0], box.hi[0]);
   AffineForm c = widened(cos(theta), length_tolerance), s = widened(sin(theta), length_tolerance);
   c.range.hi = std::min(c.range.hi, 1.);
-  return lifted(domain, s, c, AffineForm::variable(2, box.lo[1], box.hi[1]),
-                AffineForm::variable(3, box.lo[2], box.hi[2]));
+  return lifted(domain, s, c, AffineForm::variable(1, box.lo[1], box.hi[1]),
+                AffineForm::variable(2, box.lo[2], box.hi[2]));
 }
 
 Box random_box(Pcg32& bits) {
@@ -52,10 +52,9 @@ bool holds(const AffineForm& form, const Box& box, const std::array<double, 3>& 
   if (!form.range.contains(value)) return false;
   if (form.error == detail::infinity) return true;
   double line = form.middle;
-  constexpr std::size_t variable[] = {0, 2, 3};
   for (std::size_t k = 0; k < 3; ++k) {
     const double radius = 0.5 * (box.hi[k] - box.lo[k]);
-    line += form.slope[variable[k]] * (point[k] - 0.5 * (box.lo[k] + box.hi[k])) / radius;
+    line += form.slope[k] * (point[k] - 0.5 * (box.lo[k] + box.hi[k])) / radius;
   }
   return std::abs(value - line) <= form.error * (1 + 1e-9);
 }

@@ -26,10 +26,7 @@ inline Vec3<AffineForm> sum_of_directions(const Vec3<AffineForm>& wo, const Vec3
 inline AffineForm sin2_theta(const Vec3<AffineForm>& w) {
   const AffineForm plain = w.x * w.x + w.y * w.y;
   const AffineForm slack = AffineForm::anything_in({-3 * length_tolerance, 3 * length_tolerance});
-  AffineForm by_cosine = AffineForm(1) - sqr(w.z) + slack;
-  if (!(by_cosine.error < plain.error)) return plain;
-  by_cosine.range = intersection(by_cosine.range, plain.range);
-  return by_cosine;
+  return narrower(plain, AffineForm(1) - sqr(w.z) + slack);
 }
 
 // What encloses a function of three channels (a grey one has three that are equal): every value that it returns

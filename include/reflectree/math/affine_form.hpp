@@ -18,10 +18,10 @@
 namespace reflectree {
 
 struct AffineForm {
-  static constexpr std::size_t variables = 4;
+  static constexpr std::size_t variables = 3;
   using Slopes = std::array<double, variables>;
 
-  // The values at e in [-1, 1]^4: middle + slope . e, up to `error`; all of them lie in `range`.
+  // The values at e in [-1, 1]^3: middle + slope . e, up to `error`; all of them lie in `range`.
   double middle = 0;
   Slopes slope{};
   double error = 0;  // infinite: the range alone is known
@@ -72,6 +72,8 @@ AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const Aff
 // x where s has no sign. A box in which s is 0 at a border and negative inside takes -x.
 AffineForm flip_sign(const AffineForm& x, const AffineForm& s);
 
+// Of two forms of the same number the better parts.
+AffineForm narrower(const AffineForm& a, const AffineForm& b);
 // x as it stands, or more or less by up to a share of itself.
 AffineForm widened(const AffineForm& x, double share);
 // alpha x + [lo, hi], which hold a function of x; `range`: all its values.

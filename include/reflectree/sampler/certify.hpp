@@ -13,11 +13,11 @@ namespace reflectree {
 
 struct CertifyOptions {
   // A bound is raised where it exceeds the largest value seen in its leaf by less than this share: what is left
-  // to prove then is not sharp. Relative, in (0, 1]. Leaves that take many boxes get twice and four times as much.
+  // to prove then is not sharp. Relative, in (0, 1]. Leaves that take many boxes get twice as much,
+  // and twice again.
   double tolerance = 0.01;
-  // Where the boxes of a leaf are used up, a bound that is proved within this share counts, too; in
-  // [tolerance, 1].
-  double loosest = 0.05;
+  // The most that they get; in [tolerance, 1].
+  double loosest = 0.1;
   std::uint64_t boxes_per_leaf = 400000;
 };
 
@@ -33,7 +33,8 @@ struct Certification {
 std::string no_proof(const AnyBrdf& f);
 
 // Slabs whose leaves are all proved become certified; their bounds rise where they must. A slab with an open
-// leaf keeps its bounds and stays estimated, and a note of the report says how many there are. The result does
+// leaf stays estimated, and a note of the report says how many there are; its bounds rise only where a value was
+// seen above them. The result does
 // not depend on the host's threads. Throws Error where no_proof() has an answer, for options out of range, and
 // where f returns values that its own enclosure does not hold; Cancelled when the host says so: `data` is then
 // as it was.

@@ -64,13 +64,18 @@ void check_enclosure(const EnclosedField& field, const std::vector<SlabProof>& s
 
 constexpr const char* note_stem = "proof: ";
 
-// The slab's tree with the bounds that are proved; none is lowered.
-void raise(MajorantTree& tree, const SlabProof& slab) {
+// The slab's tree with the bounds that are proved, or, in a slab with open leaves, that hold at least what was
+// seen; none is lowered.
+void raise(MajorantTree& tree, const SlabProof& slab, bool certified) {
   std::vector<double> volumes;
   bool raised = false;
   for (std::size_t k = 0; k < slab.leaves.size(); ++k) {
-    volumes.push_back(double(area_of(slab.leaves[k])) * slab.proofs[k].bound);
-    raised = raised || slab.proofs[k].bound > double(slab.leaves[k].height);
+    const LeafProof& proof = slab.proofs[k];
+    const double height = double(slab.leaves[k].height);
+    const double bound =
+        certified ? proof.bound : std::max(height, proof.seen * (proof.seen > height ? 1.001 : 1));
+    volumes.push_back(double(area_of(slab.leaves[k])) * bound);
+    raised = raised || bound > height;
   }
   if (raised) set_volumes(tree, volumes);
 }
@@ -151,10 +156,10 @@ Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions&
     ++out.slabs;
     tree.status = open == 0 ? BoundStatus::certified : BoundStatus::estimated;
     tree.bound_ratio = open == 0 ? float(ratio) : 0;
+    raise(tree, slab, open == 0);
     if (open > 0) continue;
     ++out.certified_slabs;
     out.largest_ratio = std::max(out.largest_ratio, ratio);
-    raise(tree, slab);
   }
   proved.report.expected_trials = 0;
   for (const MajorantTree& tree : proved.exact)

@@ -90,12 +90,12 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
   c.range = intersection(c.range, {double(cosines.lo), double(cosines.hi)});
   const Vec3<AffineForm> wo{s, AffineForm(0), c};
 
-  const LeafCell<float> cell = unpack(leaf, packed_.domain.half());
+  const LeafCell<float> cell = cell_of(leaf);
   const LeafCell<AffineForm> forms{
       AffineForm(cell.x),       AffineForm(cell.y),       AffineForm(cell.width), AffineForm(cell.length),
       AffineForm(cell.slope_x), AffineForm(cell.slope_y), AffineForm(1)};
-  PointInLeafT<AffineForm> at = point_at(forms, AffineForm::variable(2, box.lo[1], box.hi[1]),
-                                         AffineForm::variable(3, box.lo[2], box.hi[2]));
+  PointInLeafT<AffineForm> at = point_at(forms, AffineForm::variable(1, box.lo[1], box.hi[1]),
+                                         AffineForm::variable(2, box.lo[2], box.hi[2]));
   // Rounding ascends, and the borders of cells are floats.
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});

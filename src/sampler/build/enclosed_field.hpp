@@ -47,6 +47,7 @@ class EnclosedField {
   EnclosedField(const AnyBrdf& f, const PackedSampler& packed);
 
   Elevations elevations(CosineRange cosines) const;
+  LeafCell<float> cell_of(const PackedLeaf& leaf) const { return unpack(leaf, packed_.domain.half()); }
   EnclosedPoint over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const;
   // As a sampler computes it.
   PointValue at(const ProofPoint& point, CosineRange cosines, const PackedLeaf& leaf) const;

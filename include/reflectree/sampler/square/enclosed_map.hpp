@@ -36,10 +36,7 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const AffineForm& z,
   if (!(off < 1) || !(lost < 1)) return plain;
   const AffineForm to_rim = d * (AffineForm(1) - y) + AffineForm::anything_in({-off, off});
   const AffineForm beyond = AffineForm(1) + y * d * (star.p / star.c);
-  AffineForm narrow = z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost});
-  if (!(narrow.error < plain.error)) return plain;
-  narrow.range = intersection(narrow.range, plain.range);
-  return narrow;
+  return narrower(plain, z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost}));
 }
 
 }  // namespace reflectree
