@@ -180,7 +180,7 @@ AffineForm ramp(const AffineForm& x) {
   return between_lines(x, alpha, 0, std::max(-alpha * a, b - alpha * b), range, 0);
 }
 
-bool is_slack(const AffineForm& a) { return radius_of(a.slope) == 0; }
+bool is_slack(const AffineForm& a) { return radius_of(a.slope) == 0 && a.range.contains(0); }
 
 // log(a + b) = log a + log(1 + e^u), u = log b - log a, for positive a and b one of which kept its logarithm:
 // convex in u, with a second derivative of at most 1/4. Or log a, where b is a slack.

@@ -41,8 +41,10 @@ Box random_box(Pcg32& bits) {
     // Often at a border: the pole, the rim, the normal, grazing.
     const double where = uniform(bits) < 0.2 ? (uniform(bits) < 0.5 ? 0. : 1.) : uniform(bits);
     const double width = share * (hi[k] - lo[k]);
-    box.lo[k] = double(float(lo[k] + where * (hi[k] - lo[k] - width)));
-    box.hi[k] = double(float(box.lo[k] + width));
+    volatile float from = float(lo[k] + where * (hi[k] - lo[k] - width));  // see affine_form.hpp
+    box.lo[k] = double(from);
+    volatile float to = float(box.lo[k] + width);
+    box.hi[k] = double(to);
   }
   return box;
 }
@@ -76,9 +78,10 @@ Seen<M> compare(const M& model, const F& f, Pcg32& bits, int boxes) {
     ++seen.boxes, seen.finite += form.error < detail::infinity;
     for (int k = 0; k < 6; ++k) {
       std::array<double, 3> at{};
-      for (std::size_t a = 0; a < 3; ++a)
-        at[a] = double(float(box.at(a, k < 4 ? uniform(bits) : double(bits() & 1U))));
-      for (std::size_t a = 0; a < 3; ++a) at[a] = std::clamp(at[a], box.lo[a], box.hi[a]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        volatile float place = float(box.at(a, k < 4 ? uniform(bits) : double(bits() & 1U)));
+        at[a] = std::clamp(double(place), box.lo[a], box.hi[a]);
+      }
       const auto point =
           lifted(domain, float(std::sin(at[0])), float(std::cos(at[0])), float(at[1]), float(at[2]));
       if (!holds(form, box, at, double(f(point.geometry).g * point.projected_area))) ++seen.missed;

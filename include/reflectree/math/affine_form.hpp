@@ -11,6 +11,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 
 #include "reflectree/math/direction.hpp"
 #include "reflectree/math/interval.hpp"
@@ -38,7 +40,9 @@ struct AffineForm {
   requires std::is_arithmetic_v<A>
   constexpr explicit AffineForm(A number) : middle(double(number)) {
     constexpr double unit = 0x1.0001p-24;
-    const bool exact = std::is_same_v<A, float> || double(float(middle)) == middle;
+    // The bits that a float lacks. (A rounding to float and back is what g++ 12 may leave out of two at once.)
+    const bool exact =
+        std::is_same_v<A, float> || (std::bit_cast<std::uint64_t>(middle) & std::uint64_t(0x1fffffff)) == 0;
     error = exact ? 0 : (middle < 0 ? -middle : middle) * unit;
     range = {middle - error, middle + error};
   }

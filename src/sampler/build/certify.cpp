@@ -99,6 +99,7 @@ Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions&
   const Host host = completed(the_host);
   std::string refusal = no_proof(f);
   if (refusal.empty() && !data.frame.isotropic()) refusal = "no interval form of viewers with an azimuth";
+  if (refusal.empty() && !data.domain.half()) refusal = "no interval form of whole squares";
   if (!refusal.empty()) throw Error(refusal, data.material, "its bounds stay estimated");
   host.stage("proving the bounds");
   const PackedSampler packed = pack(data);
