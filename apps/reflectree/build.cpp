@@ -10,8 +10,6 @@
 
 namespace reflectree::cli {
 
-namespace {
-
 // Before minutes of work, not after.
 void check_output(const std::string& path) {
   namespace fs = std::filesystem;
@@ -23,6 +21,14 @@ void check_output(const std::string& path) {
   if (fs::is_directory(path, ignored)) throw Error("is a folder", path, "name a file");
 }
 
+namespace {
+
+// As above: a material whose bounds cannot be proved.
+void check_provable(const Context& context, const std::string& material) {
+  const std::string refusal = no_proof(open_brdf(material, context.places()));
+  if (!refusal.empty()) throw Error(refusal, material, "leave out --certify; its bounds stay estimated");
+}
+
 }  // namespace
 
 void add_build(CLI::App& app, Context& context, Run& run) {
@@ -30,6 +36,7 @@ void add_build(CLI::App& app, Context& context, Run& run) {
   struct Options {
     std::string material, output;
     BuildChoices choices;
+    bool certify = false;
   };
   auto o = std::make_shared<Options>();
   command->add_option("MATERIAL", o->material, "A model, a sum, or a file (see reflectree --help)")
@@ -37,9 +44,10 @@ void add_build(CLI::App& app, Context& context, Run& run) {
       ->required();
   command->add_option("-o,--output", o->output, "The sampler file to write")->type_name("FILE")->required();
   add_build_choices(*command, o->choices);
+  command->add_flag("--certify", o->certify, "Prove the bounds, too (see reflectree certify --help)");
   command->footer(
       "Examples:\n"
-      "  reflectree build ggx:alpha=0.1 -o gold.rfl\n"
+      "  reflectree build ggx:alpha=0.1 -o gold.rfl --certify\n"
       "  reflectree build paper_white.bsdf -o paper.rfl --trials 1.1\n"
       "  reflectree build ggx:alpha=0.02..1 -o metals.rfl\n"
       "A parameter with a range makes a family: one sampler of every value inside.\n"
@@ -50,6 +58,7 @@ void add_build(CLI::App& app, Context& context, Run& run) {
       if (names_sampler_file(o->material, context.places())) {
         throw Error("is a sampler already", o->material, "name a material");
       }
+      if (o->certify) check_provable(context, o->material);
       const auto save = [&](auto subject) {
         save_sampler(o->output, subject.data);
         subject.file_size = std::filesystem::file_size(o->output);
@@ -57,6 +66,8 @@ void add_build(CLI::App& app, Context& context, Run& run) {
       };
       if (names_family(o->material, context.places())) {
         save(open_family(context, o->material, o->choices));
+      } else if (o->certify) {
+        save(certified(context, open_sampler(context, o->material, o->choices), {}));
       } else {
         save(open_sampler(context, o->material, o->choices));
       }

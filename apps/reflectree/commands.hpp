@@ -13,6 +13,7 @@ using Run = std::function<int()>;
 
 void add_list(CLI::App& app, Context& context, Run& run);
 void add_build(CLI::App& app, Context& context, Run& run);
+void add_certify(CLI::App& app, Context& context, Run& run);
 void add_info(CLI::App& app, Context& context, Run& run);
 void add_eval(CLI::App& app, Context& context, Run& run);
 void add_sample(CLI::App& app, Context& context, Run& run);

@@ -44,6 +44,13 @@ Leaves leaves_of(const std::vector<T>& trees) {
   return leaves;
 }
 
+// Of a proved bound to the best value seen in its leaf.
+float largest_ratio(const SamplerData& data) {
+  float ratio = 0;
+  for (const MajorantTree& tree : data.exact) ratio = max(ratio, tree.bound_ratio);
+  return ratio;
+}
+
 // What is told of samplers and of those of families.
 struct Facts {
   const SamplerData& data;
@@ -86,6 +93,7 @@ Json json_of(const Facts& s, const std::vector<MeasuredFile>& measured) {
             {"one_shot_leaves", leaves_of(d.one_shot).total},
             {"certified_slabs", certified},
             {"estimated_slabs", std::ptrdiff_t(d.exact.size()) - certified},
+            {"largest_bound_ratio", certified > 0 ? Json(shortest(largest_ratio(d))) : Json()},
             {"bytes_in_memory", bytes_of(s.packed)},
             {"bytes_on_disk", nullptr},
             {"albedo_minimum", shortest(*low)},
@@ -112,8 +120,11 @@ std::string bounds_text(const Facts& s) {
                     [](const MajorantTree& tree) { return tree.status == BoundStatus::certified; });
   const auto estimated = std::ptrdiff_t(s.data.exact.size()) - certified;
   if (certified == 0) return "estimated: sampled maxima, attacked at build";
-  if (estimated == 0) return "certified: proved";
-  return fmt::format("certified in {} slabs, estimated in {}", certified, estimated);
+  const std::string ratio =
+      fmt::format("at most {:.3g} times the best value seen in their leaves", largest_ratio(s.data));
+  if (estimated == 0) return "certified: proved; " + ratio;
+  return fmt::format("certified in {} slabs, estimated in {}; the proved ones are {}", certified, estimated,
+                     ratio);
 }
 
 void show(const Context& context, const std::string& command, const Facts& s) {
@@ -156,8 +167,12 @@ void show(const Context& context, const std::string& command, const Facts& s) {
                    *low / d.target.scale, *high / d.target.scale, d.albedo.albedo.size(),
                    d.albedo.relative_error));
   line("expected trials", fmt::format("{:.4g} in the worst slab", d.report.expected_trials));
-  line("overshoot mass",
-       fmt::format("{:.2g} in the worst slab, as the build's attack estimates it", d.report.overshoot_mass));
+  const bool proved = std::all_of(d.exact.begin(), d.exact.end(), [](const MajorantTree& tree) {
+    return tree.status == BoundStatus::certified;
+  });
+  line("overshoot mass", proved ? "0, proved"
+                                : fmt::format("{:.2g} in the worst slab, as the build's attack estimates it",
+                                              d.report.overshoot_mass));
   line("one-shot variance", fmt::format("{:.3g} relative, median over slabs", d.report.one_shot_variance));
   line("asymmetry", fmt::format("{:.2g} between mirror images", d.report.asymmetry));
   line("evaluations", std::to_string(d.report.evaluations));

@@ -89,8 +89,8 @@ int dispatch(int argc, char** argv) {
   app.footer(footer);
   Run run;
   for (const auto add :
-       {add_list, add_build, add_info, add_eval, add_sample, add_verify, add_doctor, add_draw, add_bake,
-        add_export, add_compare, add_render, add_image_compare, add_demo}) {
+       {add_list, add_build, add_certify, add_info, add_eval, add_sample, add_verify, add_doctor, add_draw,
+        add_bake, add_export, add_compare, add_render, add_image_compare, add_demo}) {
     add(app, context, run);
   }
   try {

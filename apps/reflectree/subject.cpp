@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subject.hpp"
 
+#include <chrono>
+
 #include "reflectree/error.hpp"
 #include "reflectree/text/number_text.hpp"
 
@@ -135,6 +137,20 @@ OpenedSampler open_sampler(const Context& context, const std::string& text, cons
   OpenedSampler subject = build_named_sampler(text, std::move(f), places, options, context.host("building"));
   context.detail(fmt::format("built in {:.2f} s, {} evaluations", *subject.build_seconds,
                              subject.data.report.evaluations));
+  return subject;
+}
+
+OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Certification c = certify(subject.data, subject.f, options, context.host("certifying"));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  subject.packed = std::make_shared<const PackedSampler>(pack(subject.data));
+  subject.sampler = {ExactSampler<AnyBrdf>(subject.f, subject.packed),
+                     OneShotSampler<AnyBrdf>(subject.f, subject.packed)};
+  context.say(fmt::format("proved {} of {} leaves, {} of {} slabs, in {:.2f} s; {} bounds were raised",
+                          c.proved_leaves, c.leaves, c.certified_slabs, c.slabs, took.count(),
+                          c.raised_leaves));
+  context.detail(fmt::format("looked at {} boxes", c.boxes));
   return subject;
 }
 

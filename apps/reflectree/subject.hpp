@@ -6,6 +6,7 @@
 
 #include "context.hpp"
 #include "reflectree/formats/open.hpp"
+#include "reflectree/sampler/certify.hpp"
 
 namespace reflectree::cli {
 
@@ -27,5 +28,11 @@ OpenedSampler open_sampler(const Context& context, const std::string& text, cons
 OpenedFamily open_family(const Context& context, const std::string& text, const BuildChoices& choices);
 // The option --at.
 void add_member_choice(CLI::App& command, std::string& at);
+
+// Throws Error where a file cannot be written there.
+void check_output(const std::string& path);
+
+// Proves what can be proved of the subject's bounds, says what was, and packs it again. Throws Error, Cancelled.
+OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options);
 
 }  // namespace reflectree::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/formats/sampler_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -214,6 +215,17 @@ void read_widths(ByteReader& in, SamplerData& data) {
   data.domain.scale_x = read_float(in), data.domain.scale_y = read_float(in);
 }
 
+// Of every exact tree, in order.
+void read_ratios(ByteReader& in, SamplerData& data) {
+  const std::vector<float> ratios = read_floats(in);
+  if (ratios.size() != data.exact.size()) {
+    throw Error("damaged: " + std::to_string(ratios.size()) + " ratios of " +
+                    std::to_string(data.exact.size()) + " trees",
+                in.where(), fetch_again);
+  }
+  for (std::size_t s = 0; s < ratios.size(); ++s) data.exact[s].bound_ratio = ratios[s];
+}
+
 struct ChunkReader {
   std::string_view tag;
   bool required;
@@ -236,6 +248,7 @@ constexpr ChunkReader chunk_readers[] = {
     {"ANIS", false, read_anisotropy},
     {"FMLY", false, read_family},
     {"WDTH", false, read_widths},
+    {"CERT", false, read_ratios},
 };
 
 const ChunkReader* find_reader(std::string_view tag) {
@@ -342,6 +355,14 @@ Bytes encode_sampler(const SamplerData& data) {
   if (!data.probes.channels.empty())
     chunk(
         "PRCH", [&](Bytes& p) { append_floats(p, data.probes.channels); }, optional_flag);
+  const auto is_proved = [](const MajorantTree& tree) { return tree.bound_ratio != 0; };
+  if (std::any_of(data.exact.begin(), data.exact.end(), is_proved)) {
+    const auto ratios = [&](Bytes& p) {
+      append_u32(p, std::uint32_t(data.exact.size()));
+      for (const MajorantTree& tree : data.exact) append_f32(p, tree.bound_ratio);
+    };
+    chunk("CERT", ratios, optional_flag);
+  }
   if (!data.report.notes.empty()) {
     const auto notes = [&](Bytes& p) {
       append_u32(p, std::uint32_t(data.report.notes.size()));

@@ -94,6 +94,10 @@ void validate(const SamplerData& data) {
     if (data.exact[s].status != BoundStatus::certified && data.exact[s].status != BoundStatus::estimated) {
       fail("unknown status of the bounds", where);
     }
+    const float ratio = data.exact[s].bound_ratio;
+    if (!(std::isfinite(ratio) && ratio >= 0)) fail("the ratio of the bounds is not a number", where);
+    if (ratio != 0 && data.exact[s].status != BoundStatus::certified)
+      fail("a ratio of estimated bounds", where);
   }
   for (std::size_t s = 0; s < data.one_shot.size(); ++s) {
     validate(data.one_shot[s], "one-shot tree " + std::to_string(s));

@@ -20,6 +20,7 @@ inline SamplerData sampler_data() {
   low.slope_x = {0, -127, 127}, low.slope_y = {1, 2, -3};
   low.volume = 1.21f;
   low.status = BoundStatus::certified;
+  low.bound_ratio = 1.01f;
   high.nodes = {TreeSplit::leaf};
   high.mass = {12345}, high.slope_x = {5}, high.slope_y = {-6};
   high.volume = 1.25f;

@@ -42,6 +42,9 @@ TEST(SamplerData, RefusesEveryKindOfDamage) {
   refused("volume", [](auto& d) { d.exact[0].volume = std::nanf(""); });
   refused("volume", [](auto& d) { d.exact[0].volume = -1; });
   refused("status", [](auto& d) { d.exact[0].status = BoundStatus(7); });
+  refused("ratio", [](auto& d) { d.exact[0].bound_ratio = -1; });
+  refused("ratio of estimated",
+          [](auto& d) { d.exact[0].status = BoundStatus::estimated, d.exact[0].bound_ratio = 1; });
   refused("albedo", [](auto& d) { d.albedo.albedo[1] = std::nanf(""); });
   refused("albedo", [](auto& d) { d.albedo.albedo[1] = -1; });
   refused("albedo short", [](auto& d) { d.albedo.albedo.pop_back(); });

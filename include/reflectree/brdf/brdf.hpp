@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -88,6 +89,8 @@ struct AzimuthKnots {
   std::vector<float> phi_o;  // radians, in any order
 };
 
+class BrdfEnclosure;  // enclosure.hpp
+
 // What a function may tell about itself. The builder verifies what it can.
 struct BrdfTraits {
   std::string name = "lambda";  // canonical material text where there is one
@@ -110,6 +113,8 @@ struct BrdfTraits {
   std::function<double(double)> theta_o_factor;
   // The sharp lobes of f for a viewer wo; empty: none known. Only hints: a lobe told of wrongly costs time.
   std::function<std::vector<SharpLobe>(Direction wo)> sharp;
+  // Bounds f over boxes of directions, so that a sampler's bounds can be proved; empty: nobody can.
+  std::shared_ptr<const BrdfEnclosure> enclosure;
 };
 
 template <class F>

@@ -19,6 +19,7 @@
 //         the law of the widths x:f32[3] y:f32[3] (albedos: the last parameter outermost)
 //   WDTH  of a member cut out of a family: the widths of its domain, x:f32 y:f32
 //   PRCH* every channel at the 64 probes: f32..., of functions without a name
+//   CERT* of every exact tree the largest ratio of a proved bound to the best value seen: f32...
 //   NOTE* sentences about what was promised and is not kept
 //
 // *: flag bit 0 marks a chunk that a reader who does not know its tag or version may skip. Lists and texts

@@ -28,6 +28,9 @@ enum class BoundStatus : std::uint8_t { certified, estimated };
 struct MajorantTree : CanonicalTree {
   float volume = 0;
   BoundStatus status = BoundStatus::estimated;
+  // Of certified bounds the largest share by which one exceeds the largest value seen in its leaf, as a ratio;
+  // 0: not certified.
+  float bound_ratio = 0;
   friend bool operator==(const MajorantTree&, const MajorantTree&) = default;
 };
 

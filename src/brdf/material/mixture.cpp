@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/text/number_text.hpp"
 
@@ -67,6 +68,33 @@ class Mixture {
   BrdfTraits traits_;
 };
 
+// The sum as accumulate() forms it, term after term.
+class SumEnclosure final : public BrdfEnclosure {
+ public:
+  explicit SumEnclosure(const std::vector<MixtureTerm>& terms) {
+    for (const MixtureTerm& term : terms) parts_.push_back({term.weight, term.f.traits().enclosure});
+  }
+  bool whole() const {
+    return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return bool(part.enclosure); });
+  }
+  bool is_mirror_symmetric() const override {
+    return std::all_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return part.enclosure->is_mirror_symmetric(); });
+  }
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
+    RgbT<AffineForm> sum;
+    for (const Part& part : parts_) sum = sum + AffineForm(part.weight) * (*part.enclosure)(g);
+    return sum;
+  }
+
+ private:
+  struct Part {
+    float weight;
+    std::shared_ptr<const BrdfEnclosure> enclosure;
+  };
+  std::vector<Part> parts_;
+};
+
 std::string term_text(const MixtureTerm& term) {
   const std::string& name = term.f.traits().name;
   if (term.weight == 1) return name;
@@ -121,6 +149,8 @@ AnyBrdf mixture(std::vector<MixtureTerm> terms, std::string name) {
     }
   }
   if (!name.empty()) traits.name = std::move(name);
+  const auto enclosure = std::make_shared<SumEnclosure>(terms);
+  if (enclosure->whole()) traits.enclosure = enclosure;
   return Mixture(std::move(terms), std::move(traits));
 }
 

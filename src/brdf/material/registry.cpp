@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/brdf/material/baked_tables.hpp"
 #include "reflectree/brdf/material/model_family.hpp"
 #include "reflectree/brdf/models/all.hpp"
@@ -24,7 +25,10 @@ ModelInfo entry() {
     if constexpr (requires(const M& m) { m.fault(); }) return model_from_values<M>(values).fault();
     return nullptr;
   };
-  info.make = [](std::span<const Rgb> values) -> AnyBrdf { return model_from_values<M>(values); };
+  // The model's own formula encloses itself.
+  info.make = [](std::span<const Rgb> values) -> AnyBrdf {
+    return Enclosed<M>(model_from_values<M>(values));
+  };
   info.make_family = [](std::span<const Rgb> values, std::span<const VariedValues> varied,
                         const std::vector<ParameterRange>& ranges, const std::string& name) -> AnyFamily {
     ModelFamily<M> family{model_from_values<M>(values), {}};

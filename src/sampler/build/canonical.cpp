@@ -113,6 +113,12 @@ MajorantTree majorant_tree(const Slab& slab) {
   return tree;
 }
 
+void set_volumes(MajorantTree& tree, const std::vector<double>& volumes) {
+  tree.mass.clear();
+  const double unit = quantise(volumes, tree.mass);
+  tree.volume = std::nextafter(float(unit * total_mass(tree)), 1e30f);
+}
+
 DensityTree density_tree(const Slab& slab) {
   DensityTree tree;
   fill(tree, slab);

@@ -12,5 +12,7 @@ std::size_t slab_index(const Partition& partition, const Viewer& viewer, const K
 // The tree of a slab with its bounds, in integer masses that are rounded up.
 MajorantTree majorant_tree(const Slab& slab);
 DensityTree density_tree(const Slab& slab);
+// Gives every leaf, in preorder, the volume under its bound; masses are rounded up.
+void set_volumes(MajorantTree& tree, const std::vector<double>& volumes);
 
 }  // namespace reflectree::detail

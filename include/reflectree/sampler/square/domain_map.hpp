@@ -42,6 +42,13 @@ REFLECTREE_INLINE HalfVectorStar<T> half_vector_star(T sin_theta_o, T cos_theta_
   return {by_sign(sx, l * l, c2), cos_theta_o * l};
 }
 
+// cos theta_i = 2 (wo.n) / (n.n) - cos theta_o of a place of the star. Where nothing is known but a box of
+// places (enclosed_map.hpp) the other arguments serve.
+template <class T>
+REFLECTREE_INLINE T reflected_cosine(T twice, T cos_theta_o, const HalfVectorStar<T>&, T, T, T) {
+  return twice - cos_theta_o;
+}
+
 // Rounding may carry the very rim of the square to the horizon or below: it stays just above.
 inline constexpr float min_cos_theta_i = 1e-7f;
 
@@ -58,7 +65,7 @@ REFLECTREE_INLINE DomainPointT<T> lift_half_vector(Vec3<T> wo, Vec2<T> azimuth, 
   const T wo_n = max(axis.x * azimuth.x * tau + axis.z, T(min_cos_theta_i));
   const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
   const Vec3<T> wi{twice * tau * azimuth.x - axis.x, twice * tau * azimuth.y,
-                   max(twice - axis.z, T(min_cos_theta_i))};
+                   max(reflected_cosine(twice, axis.z, star, y, d, cos2_theta_h), T(min_cos_theta_i))};
   // d(wi) = 4 (wo.wh) d(wh); dphi = pi/2 dx, dx dy = 4 d(share).
   const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (tau * d * d);
   if (side < 0) return {shading_geometry(wo, wi), projected_area};

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reflectree/sampler/certify.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <span>
+
+#include "canonical.hpp"
+#include "check_options.hpp"
+#include "leaf_proof.hpp"
+#include "reflectree/error.hpp"
+#include "reflectree/math/random.hpp"
+
+namespace reflectree {
+
+namespace {
+
+using namespace detail;
+
+// A slab with its leaves as they are sampled.
+struct SlabProof {
+  CosineRange cosines;
+  std::span<const PackedLeaf> leaves;
+  std::vector<LeafProof> proofs;
+};
+
+// In order of the partition; slabs of one coordinate are packed in order of the cosine.
+std::vector<SlabProof> slabs_of(const PackedSampler& packed) {
+  std::vector<SlabProof> slabs;
+  const std::vector<float>& borders = packed.exact.lookup.borders();
+  for (std::size_t i = packed.exact.slabs.size(); i-- > 0;) {
+    const PackedSlab& slab = packed.exact.slabs[i];
+    SlabProof proof{{borders[i], min(borders[i + 1], 1.f)}, {}, {}};
+    proof.leaves = std::span(packed.exact.leaves).subspan(slab.first, slab.count);
+    proof.proofs.resize(slab.count);
+    slabs.push_back(std::move(proof));
+  }
+  return slabs;
+}
+
+void check(const CertifyOptions& o) {
+  if (o.tolerance > 0 && o.tolerance <= 1 && o.loosest >= o.tolerance && o.loosest <= 1 &&
+      o.boxes_per_leaf >= 1)
+    return;
+  throw Error("tolerance and loosest are not in (0, 1], or there is no box to look at", "certification",
+              "take the defaults");
+}
+
+// An enclosure may be that of another function, as when traits are copied: values at points tell.
+void check_enclosure(const EnclosedField& field, const std::vector<SlabProof>& slabs) {
+  constexpr int points = 16;
+  Pcg32 u(17);
+  for (const SlabProof& slab : slabs) {
+    const Elevations theta = field.elevations(slab.cosines);
+    for (int i = 0; i < points; ++i) {
+      const PackedLeaf& leaf = slab.leaves[u() % slab.leaves.size()];
+      const ProofPoint at{linear_mix(to_unit_double(u()), theta.lo, theta.hi), double(to_unit_float(u())),
+                          double(to_unit_float(u()))};
+      check_value(field.over({at, at}, slab.cosines, leaf), field.at(at, slab.cosines, leaf));
+    }
+  }
+}
+
+constexpr const char* note_stem = "proof: ";
+
+// The slab's tree with the bounds that are proved, or, in a slab with open leaves, that hold at least what was
+// seen; none is lowered.
+void raise(MajorantTree& tree, const SlabProof& slab, bool certified) {
+  std::vector<double> volumes;
+  bool raised = false;
+  for (std::size_t k = 0; k < slab.leaves.size(); ++k) {
+    const LeafProof& proof = slab.proofs[k];
+    const double height = double(slab.leaves[k].height);
+    const double bound =
+        certified ? proof.bound : std::max(height, proof.seen * (proof.seen > height ? 1.001 : 1));
+    volumes.push_back(double(area_of(slab.leaves[k])) * bound);
+    raised = raised || bound > height;
+  }
+  if (raised) set_volumes(tree, volumes);
+}
+
+}  // namespace
+
+std::string no_proof(const AnyBrdf& f) {
+  const BrdfTraits& traits = f.traits();
+  if (!traits.enclosure)
+    return "no interval form: it is known at points alone; models and sums of models have one";
+  if (traits.channels != 1 && traits.channels != 3)
+    return "no interval form of a function of this many channels";
+  if (!traits.isotropic_by_formula)
+    return "no interval form of the geometry where the azimuth of the viewer matters";
+  return "";
+}
+
+Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options,
+                      const Host& the_host) {
+  check(options);
+  const Host host = completed(the_host);
+  std::string refusal = no_proof(f);
+  if (refusal.empty() && !data.frame.isotropic()) refusal = "no interval form of viewers with an azimuth";
+  if (refusal.empty() && !data.domain.half()) refusal = "no interval form of whole squares";
+  if (!refusal.empty()) throw Error(refusal, data.material, "its bounds stay estimated");
+  host.stage("proving the bounds");
+  const PackedSampler packed = pack(data);
+  const EnclosedField field(f, packed);
+  std::vector<SlabProof> slabs = slabs_of(packed);
+  check_enclosure(field, slabs);
+  struct Task {
+    std::uint32_t slab, leaf;
+  };
+  std::vector<Task> tasks;
+  for (std::uint32_t s = 0; s < slabs.size(); ++s) {
+    for (std::uint32_t k = 0; k < slabs[s].leaves.size(); ++k) tasks.push_back({s, k});
+  }
+  const ProofLimits limits{options.tolerance, 1 + options.loosest, options.boxes_per_leaf};
+  // The error of the first leaf wins, so that the message does not depend on the threads.
+  std::mutex mutex;
+  std::size_t first_bad = tasks.size();
+  std::exception_ptr error;
+  constexpr std::size_t batch = 64;
+  for (std::size_t first = 0; first < tasks.size() && !error; first += batch) {
+    if (host.cancelled()) throw Cancelled();
+    host.progress(float(first) / float(tasks.size()));
+    host.parallel_for(std::min(batch, tasks.size() - first), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = first + begin; t < first + end; ++t) {
+        SlabProof& slab = slabs[tasks[t].slab];
+        try {
+          slab.proofs[tasks[t].leaf] = prove_leaf(field, slab.cosines, slab.leaves[tasks[t].leaf], limits);
+        } catch (...) {
+          const std::lock_guard<std::mutex> lock(mutex);
+          if (t < first_bad) first_bad = t, error = std::current_exception();
+        }
+      }
+    });
+  }
+  if (error) std::rethrow_exception(error);
+
+  Certification out;
+  SamplerData proved = data;
+  std::erase_if(proved.report.notes, [](const std::string& note) { return note.starts_with(note_stem); });
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    const SlabProof& slab = slabs[s];
+    MajorantTree& tree = proved.exact[s];
+    double ratio = 0;
+    std::size_t open = 0;
+    for (std::size_t k = 0; k < slab.proofs.size(); ++k) {
+      const LeafProof& p = slab.proofs[k];
+      ++out.leaves, out.boxes += p.boxes;
+      if (!p.proved) ++open;
+      // Of leaves that lie at the floor nothing is asked.
+      if (p.proved && p.bound > double(slab.leaves[k].height)) ++out.raised_leaves;
+      if (p.proved && p.seen > 0 && p.bound > 1.01 * double(floor_share))
+        ratio = std::max(ratio, p.bound / p.seen);
+    }
+    out.proved_leaves += slab.proofs.size() - open;
+    ++out.slabs;
+    tree.status = open == 0 ? BoundStatus::certified : BoundStatus::estimated;
+    tree.bound_ratio = open == 0 ? float(ratio) : 0;
+    raise(tree, slab, open == 0);
+    if (open > 0) continue;
+    ++out.certified_slabs;
+    out.largest_ratio = std::max(out.largest_ratio, ratio);
+  }
+  proved.report.expected_trials = 0;
+  for (const MajorantTree& tree : proved.exact)
+    proved.report.expected_trials = max(proved.report.expected_trials, tree.volume);
+  if (out.certified_slabs == out.slabs) {
+    proved.report.overshoot_mass = 0;
+  } else {
+    proved.report.notes.push_back(note_stem + std::to_string(out.leaves - out.proved_leaves) + " of " +
+                                  std::to_string(out.leaves) + " leaves are open; " +
+                                  std::to_string(out.slabs - out.certified_slabs) + " of " +
+                                  std::to_string(out.slabs) + " slabs keep their estimated bounds");
+  }
+  data = std::move(proved);
+  host.progress(1);
+  return out;
+}
+
+}  // namespace reflectree
