@@ -219,8 +219,8 @@ void read_widths(ByteReader& in, SamplerData& data) {
 void read_ratios(ByteReader& in, SamplerData& data) {
   const std::vector<float> ratios = read_floats(in);
   if (ratios.size() != data.exact.size()) {
-    throw Error("damaged: " + std::to_string(ratios.size()) + " ratios of " +
-                    std::to_string(data.exact.size()) + " trees",
+    throw Error("damaged: " + std::to_string(ratios.size()) + " ratios for the " +
+                    std::to_string(data.exact.size()) + " trees of chunk EXTR",
                 in.where(), fetch_again);
   }
   for (std::size_t s = 0; s < ratios.size(); ++s) data.exact[s].bound_ratio = ratios[s];

@@ -5,7 +5,7 @@ import unittest
 
 from program import ProgramTest
 
-MATERIAL = "ggx:alpha=0.4"
+MATERIAL = "oren_nayar"
 
 
 class Certify(ProgramTest):
@@ -20,7 +20,7 @@ class Certify(ProgramTest):
         self.assertEqual(after["certified_slabs"], before["exact_slabs"])
         self.assertEqual(after["estimated_slabs"], 0)
         self.assertEqual(after["overshoot_mass"], 0)
-        self.assertTrue(1 < after["largest_bound_ratio"] < 1.1)
+        self.assertTrue(1 < after["largest_bound_ratio"] < 1.2)
         self.assertLess(after["expected_trials"], 1.08 * before["expected_trials"])
         self.assertEqual(before, self.json_of("info", "it.rfl"), "the other file stays")
         out, _ = self.run_program("info", "proved.rfl")
@@ -49,7 +49,7 @@ class Certify(ProgramTest):
         after = self.json_of("info", "it.rfl")
         self.assertGreater(after["estimated_slabs"], 0)
         self.assertIn("leaves are open", after["notes"][-1])
-        self.assertLessEqual(before["expected_trials"], after["expected_trials"] * 1.0001)
+        self.assertLessEqual(before["expected_trials"], after["expected_trials"] * 1.0001, "no bound is lowered")
 
 
 if __name__ == "__main__":
