@@ -41,7 +41,6 @@ AGAIN = 8    # times the samples
 
 # What a refusal is about, by the words of its sentence; the first that is found.
 KINDS = [
-    ("a plug-in of another project", None),  # Mitsuba's wheel does not know it either
     ("participating media", r"<medium>|<phase>|<volume>|'medium'|'interior'|'exterior'|gridvolume"),
     ("polarisation", r"'(polarizer|retarder|circular|pplastic|measured_polarized|stokes)'"),
     ("hair, curves and distance fields", r"'(hair|bsplinecurve|linearcurve|sdfgrid|ellipsoids\w*)'"),
@@ -51,7 +50,9 @@ KINDS = [
     ("another sensor", r"no sensor '"),
     ("another film or filter", r"no (film|rfilter) '|no pixel_format|no file_format"),
     ("another emitter", r"no emitter '"),
-    ("a file that is not there, or not whole", r"cannot (open|read)|no file|ends early|damaged|is a pointer"),
+    ("a file that is not there, or not whole", r"no such file|no file '|Git LFS pointer|ends early|damaged|mend the XML"),
+    ("words of another program: its materials, shapes, transforms, ...", r"no \w+ '|is not known|without '\w+'"),
+    ("a value that the command line gives", r"nothing defines \$"),
 ]
 MARKER = "<!-- table -->"
 
@@ -213,18 +214,15 @@ class Census:
 def earlier(table):
     """Rows of an interrupted census, by scene."""
     found = {}
-    for line in table.read_text().split("\n")[2:] if table and table.exists() else []:
+    for line in table.read_text().strip().split("\n")[2:] if table and table.exists() else []:
         name, *said, ratios, noise, z, times = line.strip().removeprefix("| ").removesuffix(" |").split(" | ")
         verdict, _, said = " | ".join(said).partition(": ")
         found[name] = (verdict, said, ratios.strip(), noise.strip(), z.strip(), times)
     return found
 
 
-def kind_of(verdict, said):
-    if verdict == "neither" and re.search(r"(P|p)lugin|not found|does not exist|unknown", said.split("(Mitsuba: ")[-1]) \
-            and not re.search(KINDS[-1][1], said):
-        return KINDS[0][0]
-    return next((name for name, words in KINDS[1:] if re.search(words, said)), "something else")
+def kind_of(said):
+    return next((name for name, words in KINDS if re.search(words, said)), "something else")
 
 
 def page(path, rows):
@@ -237,7 +235,7 @@ def page(path, rows):
         own = [r for r in rows if name in ("all", r[0].split("/")[0])]
         label = name if name == "all" else f"[{name}](https://github.com/{name.replace('+', '/', 1)})" if "+" in name else name
         lines.append(f"| {label} | {len(own)} | " + " | ".join(str(sum(r[1] == v for r in own)) for v in shown) + " |")
-    reasons = {v: collections.Counter(kind_of(r[1], r[2]) for r in rows if r[1] == v) for v in ("refused", "neither")}
+    reasons = {v: collections.Counter(kind_of(r[2]) for r in rows if r[1] == v) for v in ("refused", "neither")}
     lines += ["", "| what stops a scene | that Mitsuba renders | that Mitsuba refuses, too |", "|---|---|---|"]
     for kind in sorted({*reasons["refused"], *reasons["neither"]}, key=lambda k: (-reasons["refused"][k], -reasons["neither"][k])):
         lines.append(f"| {kind} | {reasons['refused'][kind] or ''} | {reasons['neither'][kind] or ''} |")
