@@ -153,20 +153,27 @@ Integrals integrate(const Field& field, const std::vector<Viewer>& viewers, cons
   std::vector<FieldValue> values;
   std::vector<std::size_t> first(integrals.size());  // of each integral's points
   for (bool busy = true; busy;) {
-    points.clear();
+    std::size_t total = 0;
     for (std::size_t i = 0; i < integrals.size(); ++i) {
       const Integral& integral = integrals[i];
-      first[i] = points.size();
-      if (integral.done) continue;
-      for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r) {
-        const Region& region = integral.regions[r];
-        for (const Vec2<float>& q : genz_malik_nodes<float>()) {
-          points.push_back(field_point(integral.viewer, {float(region.x + region.hx * double(q.x)),
-                                                         float(region.y + region.hy * double(q.y))}));
+      first[i] = total;
+      if (!integral.done) total += (integral.regions.size() - integral.fresh) * genz_malik_points;
+    }
+    points.resize(total), values.resize(total);
+    host.parallel_for(integrals.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Integral& integral = integrals[i];
+        if (integral.done) continue;
+        FieldPoint* point = points.data() + first[i];
+        for (std::size_t r = integral.fresh; r < integral.regions.size(); ++r) {
+          const Region& region = integral.regions[r];
+          for (const Vec2<float>& q : genz_malik_nodes<float>()) {
+            *point++ = field_point(integral.viewer, {float(region.x + region.hx * double(q.x)),
+                                                     float(region.y + region.hy * double(q.y))});
+          }
         }
       }
-    }
-    values.resize(points.size());
+    });
     const auto done =
         std::count_if(integrals.begin(), integrals.end(), [](const Integral& i) { return i.done; });
     host.progress(linear_mix(float(done) / float(integrals.size()), options.progress, options.progress_end));

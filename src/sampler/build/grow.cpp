@@ -18,14 +18,16 @@ struct SlabState {
   std::size_t next_check = 16;
 };
 
-void add_points(std::vector<FieldPoint>& points, const Slab& slab, const DyadicCell& cell,
+// The grid of a cell, for all views.
+void put_points(std::span<FieldPoint> points, const Slab& slab, const DyadicCell& cell,
                 const Domain& domain) {
   const Box box = box_of(cell, domain);
+  std::size_t at = 0;
   for (const View& view : slab.views) {
     for (int j = 0; j < grid_size; ++j) {
       for (int i = 0; i < grid_size; ++i) {
-        points.push_back(field_point(view.viewer, {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
-                                                   box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])}));
+        points[at++] = field_point(view.viewer, {box.x0 + box.width * 0.5f * (1 + lobatto_nodes[i]),
+                                                 box.y0 + box.height * 0.5f * (1 + lobatto_nodes[j])});
       }
     }
   }
@@ -58,14 +60,10 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
 void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Survey& survey,
               const GrowthRules& rules) {
   const Field& field = survey.field;
-  std::vector<FieldPoint> points;
   std::vector<std::size_t> first;  // of each task's grid
-  for (const Task& task : tasks) {
-    const Slab& slab = slabs[task.slab];
-    first.push_back(points.size());
-    add_points(points, slab, slab.nodes[task.node].leaf.cell, field.domain);
-  }
-  const std::size_t first_visit = points.size();
+  std::size_t first_visit = 0;
+  for (const Task& task : tasks)
+    first.push_back(first_visit), first_visit += slabs[task.slab].views.size() * grid_points;
   std::vector<Visit> visits;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const Slab& slab = slabs[tasks[t].slab];
@@ -76,7 +74,15 @@ void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Su
     }
     add_octaves(visits, t, slab, box);
   }
-  for (const Visit& visit : visits) points.push_back(visit.at.point);
+  std::vector<FieldPoint> points(first_visit + visits.size());
+  survey.host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Slab& slab = slabs[tasks[t].slab];
+      put_points(std::span(points).subspan(first[t], slab.views.size() * grid_points), slab,
+                 slab.nodes[tasks[t].node].leaf.cell, field.domain);
+    }
+  });
+  for (std::size_t v = 0; v < visits.size(); ++v) points[first_visit + v] = visits[v].at.point;
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t v = 0; v < visits.size(); ++v) {
