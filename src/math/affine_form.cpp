@@ -26,8 +26,8 @@ bool is_known(const AffineForm& a) { return a.error < detail::infinity; }
 bool is_log_known(const AffineForm& a) { return a.log_error < detail::infinity; }
 
 // All floats to which the numbers of a range round. Rounding ascends, and keeps 0.
-Interval rounded_range(Interval r, double unit) {
-  Interval out{r.lo - (std::abs(r.lo) * unit + flushed), r.hi + (std::abs(r.hi) * unit + flushed)};
+RealInterval rounded_range(RealInterval r, double unit) {
+  RealInterval out{r.lo - (std::abs(r.lo) * unit + flushed), r.hi + (std::abs(r.hi) * unit + flushed)};
   if (r.lo >= 0) out.lo = std::max(out.lo, 0.);
   if (r.hi <= 0) out.hi = std::min(out.hi, 0.);
   // Beyond the largest float lies infinity; NaN comes of infinities alone.
@@ -38,11 +38,11 @@ Interval rounded_range(Interval r, double unit) {
 
 // Completes a form with a middle and slopes, whose tube of an error holds the exact result; the range shrinks to
 // what the tube allows.
-void complete(AffineForm& out, double radius, double error, Interval range) {
+void complete(AffineForm& out, double radius, double error, RealInterval range) {
   const double size = std::abs(out.middle) + radius;
   error += (size + error) * own;
   const double reach = radius + error, slack = (size + error) * own;
-  const Interval tube{out.middle - reach - slack, out.middle + reach + slack};
+  const RealInterval tube{out.middle - reach - slack, out.middle + reach + slack};
   const bool known = error < largest_float && size < largest_float;
   if (known) out.range = intersection(range, tube);
   // Where the tube is wider than the range the slopes say nothing.
@@ -54,19 +54,19 @@ void complete(AffineForm& out, double radius, double error, Interval range) {
 }
 
 // The same with one rounding to float.
-void round(AffineForm& out, double error, Interval range, double unit) {
-  const Interval r = rounded_range(range, unit);
+void round(AffineForm& out, double error, RealInterval range, double unit) {
+  const RealInterval r = rounded_range(range, unit);
   const double radius = radius_of(out.slope);
   const double size = std::min(r.magnitude(), (std::abs(out.middle) + radius + error) * (1 + unit + own));
   complete(out, radius, error + size * unit + flushed, r);
 }
 
-AffineForm only_range(Interval range, double unit) {
+AffineForm only_range(RealInterval range, double unit) {
   return AffineForm::anything_in(rounded_range(range, unit));
 }
 
 // Holds a function of one variable between two lines of slope alpha.
-AffineForm between_lines(const AffineForm& x, double alpha, double lo, double hi, Interval range,
+AffineForm between_lines(const AffineForm& x, double alpha, double lo, double hi, RealInterval range,
                          double unit) {
   const double slack = (std::abs(lo) + std::abs(hi) + std::abs(alpha) * x.range.magnitude()) * own;
   if (!is_known(x) || !(slack < largest_float)) return only_range(range, unit);
@@ -115,7 +115,7 @@ void add_log(AffineForm& x, const LogForm& a, double sign, const LogForm& b, dou
 }
 constexpr LogForm log_one{0, {}, 0};
 
-AffineForm exponential(const LogForm& log, Interval exponents, Interval range, double unit);
+AffineForm exponential(const LogForm& log, RealInterval exponents, RealInterval range, double unit);
 
 // x by whichever of its two forms is narrower.
 class Settled {
@@ -125,7 +125,7 @@ class Settled {
     // About what exp adds: a quarter of the square of the radius.
     const double radius = radius_of(x.log_slope) + x.log_error;
     if (!(x.range.hi * (0.2 * radius * radius + x.log_error) < x.error)) return;
-    other_ = exponential(kept_log(x), Interval::whole(), x.range, 0);
+    other_ = exponential(kept_log(x), RealInterval::whole(), x.range, 0);
     if (other_.error < x.error) form_ = &other_;
   }
   Settled(const Settled&) = delete;
@@ -137,7 +137,7 @@ class Settled {
   AffineForm other_;
 };
 
-AffineForm product(const AffineForm& a, const AffineForm& b, Interval range, double unit) {
+AffineForm product(const AffineForm& a, const AffineForm& b, RealInterval range, double unit) {
   if (!is_known(a) || !is_known(b)) return only_range(range, unit);
   AffineForm out;
   double middle = a.middle * b.middle, square = 0, cross = 0, radius_a = 0, radius_b = 0;
@@ -162,7 +162,7 @@ AffineForm product(const AffineForm& a, const AffineForm& b, Interval range, dou
 // 1 / x, not rounded; x does not hold 0. The secant 1/a + 1/b - x / (a b) lies above, 2 r - r^2 x with
 // r^2 = 1 / (a b) below.
 AffineForm inverse(const AffineForm& x) {
-  const Interval range = Interval(1) / x.range;
+  const RealInterval range = RealInterval(1) / x.range;
   if (x.range.hi < 0) return -inverse(-x);
   const double a = x.range.lo, b = x.range.hi;
   const double alpha = -1 / (a * b);
@@ -174,7 +174,7 @@ AffineForm inverse(const AffineForm& x) {
 // max(x, 0) for x of both signs.
 AffineForm ramp(const AffineForm& x) {
   const double a = x.range.lo, b = x.range.hi;
-  const Interval range{0, b};
+  const RealInterval range{0, b};
   if (!std::isfinite(a) || !std::isfinite(b)) return AffineForm::anything_in(range);
   const double alpha = b / (b - a);
   return between_lines(x, alpha, 0, std::max(-alpha * a, b - alpha * b), range, 0);
@@ -218,7 +218,7 @@ void add_log_of_sum(AffineForm& out, const AffineForm& a, double sign, const Aff
 AffineForm sum(const AffineForm& the_a, double sign, const AffineForm& the_b, double unit) {
   const Settled settled_a(the_a), settled_b(the_b);
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
-  const Interval range = sign > 0 ? a.range + b.range : a.range - b.range;
+  const RealInterval range = sign > 0 ? a.range + b.range : a.range - b.range;
   if (!is_known(a) || !is_known(b)) return only_range(range, unit);
   AffineForm out;
   double size = std::abs(a.middle) + std::abs(b.middle);
@@ -238,7 +238,7 @@ struct Curve {
   double value, slope;
 };
 template <class Function>
-AffineForm concave(const AffineForm& x, const Function& f, double t, double alpha, Interval range,
+AffineForm concave(const AffineForm& x, const Function& f, double t, double alpha, RealInterval range,
                    double unit) {
   const double a = x.range.lo, b = x.range.hi;
   const Curve at = f(t);
@@ -258,7 +258,7 @@ AffineForm AffineForm::variable(std::size_t k, double lo, double hi) {
   return out;
 }
 
-AffineForm AffineForm::anything_in(Interval range) {
+AffineForm AffineForm::anything_in(RealInterval range) {
   AffineForm out;
   out.range = range;
   out.middle = 0, out.error = detail::infinity;
@@ -286,7 +286,7 @@ AffineForm operator*(const AffineForm& a, const AffineForm& b) {
   return out;
 }
 AffineForm operator/(const AffineForm& a, const AffineForm& b) {
-  const Interval range = a.range / b.range;
+  const RealInterval range = a.range / b.range;
   if (b.range.lo <= 0 && b.range.hi >= 0) return only_range(range, rounded);
   AffineForm out = product(a, inverse(Settled(b).form()), range, rounded);
   if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), -1, log_of(b), rounded);
@@ -304,7 +304,7 @@ AffineForm sqr(const AffineForm& x) {
 AffineForm sqrt(const AffineForm& the_x) {
   const Settled settled(the_x);
   const AffineForm& x = settled.form();
-  const Interval range = sqrt(x.range);
+  const RealInterval range = sqrt(x.range);
   const double a = std::sqrt(std::max(x.range.lo, 0.)), b = std::sqrt(std::max(x.range.hi, 0.));
   if (!(b > 0) || !std::isfinite(b)) return only_range(range, rounded);
   // sqrt x <= alpha x + 1 / (4 alpha) for any alpha.
@@ -345,7 +345,7 @@ AffineForm max(const AffineForm& a, const AffineForm& b) {
 AffineForm min(const AffineForm& a, const AffineForm& b) { return -max(-a, -b); }
 
 namespace {
-AffineForm exponential(const LogForm& log, Interval exponents, Interval range, double unit) {
+AffineForm exponential(const LogForm& log, RealInterval exponents, RealInterval range, double unit) {
   const double reach = radius_of(log.slope) + log.error;
   AffineForm x;
   x.middle = log.middle, x.slope = log.slope, x.error = log.error;
@@ -368,13 +368,13 @@ AffineForm exponential(const LogForm& log, Interval exponents, Interval range, d
 AffineForm exp(const AffineForm& the_x) {
   const Settled settled(the_x);
   const AffineForm& x = settled.form();
-  const Interval range = exp(x.range);
+  const RealInterval range = exp(x.range);
   if (!is_known(x)) return only_range(range, library);
   return exponential({x.middle, x.slope, x.error}, x.range, range, library);
 }
 
 AffineForm log(const AffineForm& x) {
-  const Interval range = log(x.range);
+  const RealInterval range = log(x.range);
   const double a = x.range.lo, b = x.range.hi;
   if (!(a > 0) || !std::isfinite(b)) return only_range(range, library);
   const double la = std::log(a), lb = std::log(b);
@@ -388,7 +388,7 @@ AffineForm log(const AffineForm& x) {
 AffineForm log1p(const AffineForm& the_x) {
   const Settled settled(the_x);
   const AffineForm& x = settled.form();
-  const Interval range = log1p(x.range);
+  const RealInterval range = log1p(x.range);
   const double a = x.range.lo, b = x.range.hi;
   if (!(a > -1) || !std::isfinite(b)) return only_range(range, library);
   const auto f = [](double v) { return Curve{std::log1p(v), 1 / (1 + v)}; };
@@ -399,7 +399,7 @@ AffineForm log1p(const AffineForm& the_x) {
 }
 
 AffineForm pow(const AffineForm& x, const AffineForm& y) {
-  const Interval range = pow(x.range, y.range);
+  const RealInterval range = pow(x.range, y.range);
   if (!(x.range.lo > 0)) return only_range(range, library);
   // The roundings of log and product, and of exp, are more than those of pow.
   AffineForm out = exp(y * log(x));
@@ -414,7 +414,7 @@ bool in_first_quadrant(const AffineForm& x) { return x.range.lo >= 0 && x.range.
 AffineForm sin(const AffineForm& the_x) {
   const Settled settled(the_x);
   const AffineForm& x = settled.form();
-  const Interval range = sin(x.range);
+  const RealInterval range = sin(x.range);
   if (!in_first_quadrant(x)) return only_range(range, library);
   const double a = x.range.lo, b = x.range.hi;
   const double alpha = b - a > 1e-7 ? (std::sin(b) - std::sin(a)) / (b - a) : std::cos(0.5 * (a + b));
@@ -429,7 +429,7 @@ AffineForm sin(const AffineForm& the_x) {
 AffineForm cos(const AffineForm& the_x) {
   const Settled settled(the_x);
   const AffineForm& x = settled.form();
-  const Interval range = cos(x.range);
+  const RealInterval range = cos(x.range);
   if (!in_first_quadrant(x)) return only_range(range, library);
   const double a = x.range.lo, b = x.range.hi;
   const double alpha = b - a > 1e-7 ? (std::cos(b) - std::cos(a)) / (b - a) : -std::sin(0.5 * (a + b));
@@ -454,7 +454,7 @@ AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const Aff
   if (s.range.hi == 0) return widened(if_negative, agreement);
   const Settled settled_a(if_positive), settled_b(if_negative);
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
-  const Interval range = hull(a.range, b.range);
+  const RealInterval range = hull(a.range, b.range);
   if (!is_known(a) || !is_known(b)) return AffineForm::anything_in(range);
   AffineForm out;
   double apart = std::abs(a.middle - b.middle), size = std::abs(a.middle) + std::abs(b.middle);
@@ -475,7 +475,7 @@ AffineForm flip_sign(const AffineForm& x, const AffineForm& s) {
 
 AffineForm narrower(const AffineForm& a, const AffineForm& b) {
   AffineForm out = b.error < a.error ? b : a;
-  const Interval range = intersection(a.range, b.range);
+  const RealInterval range = intersection(a.range, b.range);
   if (range.lo <= range.hi) out.range = range;
   if (a.log_error < out.log_error)
     out.log_middle = a.log_middle, out.log_slope = a.log_slope, out.log_error = a.log_error;
@@ -492,7 +492,7 @@ AffineForm widened(const AffineForm& x, double share) {
   out.log_error += share * (1 + share) * (1 + own);
   return out;
 }
-AffineForm linear_enclosure(const AffineForm& x, double alpha, Interval offset, Interval range) {
+AffineForm linear_enclosure(const AffineForm& x, double alpha, RealInterval offset, RealInterval range) {
   return between_lines(x, alpha, offset.lo, offset.hi, range, 0);
 }
 

@@ -72,17 +72,17 @@ std::vector<Formula> formulas() {
           REFLECTREE_FORMULA(cos_sin_half(x).x * cos_sin_half(x).y)};
 }
 
-AffineForm variable(std::size_t k, Interval range) { return AffineForm::variable(k, range.lo, range.hi); }
+AffineForm variable(std::size_t k, RealInterval range) { return AffineForm::variable(k, range.lo, range.hi); }
 
 struct Box {
-  std::array<Interval, n> range;
+  std::array<RealInterval, n> range;
   Formula::In<AffineForm> forms() const {
     const AffineForm x = variable(0, range[0]);
     return {x, variable(1, range[1]), variable(2, range[2]), (x + AffineForm(1)) * AffineForm(0.75)};
   }
 };
 Box random_box(Pcg32& u) {
-  constexpr Interval whole[n] = {{-1, 1}, {-3, 3}, {0.01, 5}};
+  constexpr RealInterval whole[n] = {{-1, 1}, {-3, 3}, {0.01, 5}};
   const double share = std::pow(2., -12 * to_unit_double(u()));
   Box box;
   for (std::size_t k = 0; k < n; ++k) {
@@ -136,15 +136,15 @@ TEST(AffineForm, HoldsFloatsAndRealNumbers) {
 
 TEST(AffineFormTwin, WrongFormsAreFound) {
   const auto narrower = [](AffineForm f) {
-    f.error *= 0.5, f.range = Interval::whole();
+    f.error *= 0.5, f.range = RealInterval::whole();
     return f;
   };
   const auto no_rounding = [](AffineForm f) {
-    f.error = std::max(0., f.error - 2 * std::abs(f.middle) * 0x1p-24), f.range = Interval::whole();
+    f.error = std::max(0., f.error - 2 * std::abs(f.middle) * 0x1p-24), f.range = RealInterval::whole();
     return f;
   };
   const auto other_sign = [](AffineForm f) {
-    f.slope[0] = -f.slope[0], f.range = Interval::whole();
+    f.slope[0] = -f.slope[0], f.range = RealInterval::whole();
     return f;
   };
   std::size_t found = 0;
@@ -175,13 +175,13 @@ TEST(AffineForm, UpperOfDifference) {
   const AffineForm x = AffineForm::variable(0, 1, 2), y = x + AffineForm(0.25);
   EXPECT_GE(upper_of_difference(x, 1, y), -0.25);
   EXPECT_LT(upper_of_difference(x, 1, y), -0.2499) << "what both share cancels";
-  EXPECT_EQ(upper_of_difference(AffineForm::anything_in(Interval::whole()), 1, y), detail::infinity);
+  EXPECT_EQ(upper_of_difference(AffineForm::anything_in(RealInterval::whole()), 1, y), detail::infinity);
 }
 
 TEST(AffineForm, WhatMayLeaveTheRangeOfFloatIsInfinite) {
   const AffineForm large = AffineForm::variable(0, 1, 2e38);
   EXPECT_EQ((large * AffineForm(4.f)).range.hi, detail::infinity);
-  EXPECT_EQ((AffineForm(1.f) / AffineForm::variable(0, -1, 1)).range, Interval::whole());
+  EXPECT_EQ((AffineForm(1.f) / AffineForm::variable(0, -1, 1)).range, RealInterval::whole());
   const AffineForm vanishing = exp(AffineForm(50.f) * log1p(-AffineForm::variable(0, 0.5, 1)));
   EXPECT_GE(vanishing.range.lo, 0);
   EXPECT_LT(vanishing.range.hi, 1e-14);

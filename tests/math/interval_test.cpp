@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every operation of Interval beside MPFI (Revol and Rouillier 2005) in 200 bits, at random boxes. What the test
+// Every operation of RealInterval beside MPFI (Revol and Rouillier 2005) in 200 bits, at random boxes. What the test
 // can see: the same boxes reject enclosures that lack the last rounding, or an extreme inside.
 #include "reflectree/math/interval.hpp"
 
@@ -18,14 +18,14 @@ namespace {
 struct Multi {
   mpfi_t v;
   Multi() { mpfi_init2(v, 200); }
-  explicit Multi(Interval a) : Multi() { mpfi_interv_d(v, a.lo, a.hi); }
+  explicit Multi(RealInterval a) : Multi() { mpfi_interv_d(v, a.lo, a.hi); }
   ~Multi() { mpfi_clear(v); }
   Multi(const Multi&) = delete;
   Multi& operator=(const Multi&) = delete;
 };
 
-using Unary = std::function<Interval(Interval)>;
-using Binary = std::function<Interval(Interval, Interval)>;
+using Unary = std::function<RealInterval(RealInterval)>;
+using Binary = std::function<RealInterval(RealInterval, RealInterval)>;
 struct Row {
   std::string name;
   Binary ours;
@@ -37,7 +37,7 @@ struct Row {
 };
 
 Binary one(Unary f) {
-  return [f](Interval a, Interval) { return f(a); };
+  return [f](RealInterval a, RealInterval) { return f(a); };
 }
 std::function<void(mpfi_ptr, mpfi_srcptr, mpfi_srcptr)> one(int (*f)(mpfi_ptr, mpfi_srcptr)) {
   return [f](mpfi_ptr out, mpfi_srcptr a, mpfi_srcptr) { f(out, a); };
@@ -60,7 +60,7 @@ void smaller(mpfi_ptr out, mpfi_srcptr a, mpfi_srcptr b) {
 }
 
 std::vector<Row> rows() {
-  using I = Interval;
+  using I = RealInterval;
   std::vector<Row> all{
       {"add", [](I a, I b) { return a + b; }, two(mpfi_add), -10, 10, 2, true, -10, 10},
       {"subtract", [](I a, I b) { return a - b; }, two(mpfi_sub), -10, 10, 2, true, -10, 10},
@@ -99,7 +99,7 @@ double between(double lo, double hi, Pcg32& u) {
   return lo > 0 ? lo * std::pow(hi / lo, t) : lo + (hi - lo) * t;
 }
 // From points to wide boxes.
-Interval random_box(double lo, double hi, Pcg32& u) {
+RealInterval random_box(double lo, double hi, Pcg32& u) {
   const double a = between(lo, hi, u);
   switch (u() % 4) {
     case 0:
@@ -135,9 +135,9 @@ Judgement judge(const Row& row, std::size_t boxes, std::uint64_t seed) {
   Judgement out;
   Pcg32 u(seed);
   for (std::size_t i = 0; i < boxes; ++i) {
-    const Interval a = random_box(row.lo, row.hi, u),
-                   b = row.two ? random_box(row.lo2, row.hi2, u) : Interval();
-    const Interval ours = row.ours(a, b);
+    const RealInterval a = random_box(row.lo, row.hi, u),
+                       b = row.two ? random_box(row.lo2, row.hi2, u) : RealInterval();
+    const RealInterval ours = row.ours(a, b);
     const Multi x(a), y(b);
     Multi truth;
     row.oracle(truth.v, x.v, y.v);
@@ -173,7 +173,7 @@ TEST(IntervalTwin, WrongEnclosuresAreFound) {
     }
     return std::size_t(0);
   };
-  using I = Interval;
+  using I = RealInterval;
   EXPECT_GT(wrong("add", [](I a, I b) { return I(a.lo + b.lo, a.hi + b.hi); }), 1000U) << "rounding was lost";
   EXPECT_GT(wrong("sqrt", one([](I a) { return I(std::sqrt(a.lo), std::sqrt(a.hi)); })), 1000U);
   EXPECT_GT(
@@ -194,13 +194,13 @@ TEST(Interval, IsMonotone) {
   for (const Row& row : rows()) {
     Pcg32 u(7);
     for (int i = 0; i < 4000; ++i) {
-      const Interval a = random_box(row.lo, row.hi, u),
-                     b = row.two ? random_box(row.lo2, row.hi2, u) : Interval();
-      const auto part = [&u](Interval whole) {
+      const RealInterval a = random_box(row.lo, row.hi, u),
+                         b = row.two ? random_box(row.lo2, row.hi2, u) : RealInterval();
+      const auto part = [&u](RealInterval whole) {
         const double p = between(0, 1, u), q = between(0, 1, u);
         const double s = whole.lo + std::min(p, q) * (whole.hi - whole.lo),
                      t = whole.lo + std::max(p, q) * (whole.hi - whole.lo);
-        return Interval(std::clamp(s, whole.lo, whole.hi), std::clamp(t, whole.lo, whole.hi));
+        return RealInterval(std::clamp(s, whole.lo, whole.hi), std::clamp(t, whole.lo, whole.hi));
       };
       EXPECT_TRUE(row.ours(a, b).contains(row.ours(part(a), part(b)))) << row.name;
     }
@@ -209,26 +209,27 @@ TEST(Interval, IsMonotone) {
 
 TEST(Interval, AtTheEdges) {
   constexpr double inf = detail::infinity, most = detail::largest_double;
-  EXPECT_EQ(Interval(1) / Interval(-1, 1), Interval::whole());
-  EXPECT_EQ(Interval(1) / Interval(0, 0), Interval::whole());
-  EXPECT_EQ((Interval(1, 2) / Interval(0, 1)).lo, 0);
-  EXPECT_EQ((Interval(1, 2) / Interval(0, 1)).hi, inf);
-  EXPECT_LT((Interval(0) * Interval::whole()).magnitude(), 1e-300) << "no member is infinite";
-  const Interval over = Interval(most) + Interval(most);
+  EXPECT_EQ(RealInterval(1) / RealInterval(-1, 1), RealInterval::whole());
+  EXPECT_EQ(RealInterval(1) / RealInterval(0, 0), RealInterval::whole());
+  EXPECT_EQ((RealInterval(1, 2) / RealInterval(0, 1)).lo, 0);
+  EXPECT_EQ((RealInterval(1, 2) / RealInterval(0, 1)).hi, inf);
+  EXPECT_LT((RealInterval(0) * RealInterval::whole()).magnitude(), 1e-300) << "no member is infinite";
+  const RealInterval over = RealInterval(most) + RealInterval(most);
   EXPECT_EQ(over.lo, most) << "an overflow is a number beyond the largest double";
   EXPECT_EQ(over.hi, inf);
-  EXPECT_GE((Interval(0, 1) * Interval(0, 1)).lo, 0) << "signs of products are exact";
-  EXPECT_EQ(sqrt(Interval(-1, 4)).lo, 0);
-  EXPECT_EQ(log(Interval(0, 1)).lo, -inf);
-  EXPECT_EQ(log1p(Interval(-2, 1)).lo, -inf);
-  EXPECT_EQ(exp(Interval(-inf, 0)).lo, 0);
-  EXPECT_EQ(cos(Interval(3, 3.2)).lo, -1);
-  EXPECT_EQ(sin(Interval(1e9, 1e9)), Interval(-1, 1));
-  EXPECT_EQ(tan(Interval(1, 2)), Interval::whole());
-  EXPECT_TRUE(atan2(Interval(-1, 1), Interval(-1, 1)).contains(Interval(-3.14159265, 3.14159265)));
-  EXPECT_LT(Interval(0.1L).lo, Interval(0.1L).hi) << "a long double that is no double";
-  EXPECT_EQ(Interval(0.5L).lo, Interval(0.5L).hi);
-  EXPECT_EQ(by_sign(Interval(-1, 1), Interval(2), Interval(5)), Interval(2, 5));
+  EXPECT_GE((RealInterval(0, 1) * RealInterval(0, 1)).lo, 0) << "signs of products are exact";
+  EXPECT_EQ(sqrt(RealInterval(-1, 4)).lo, 0);
+  EXPECT_EQ(log(RealInterval(0, 1)).lo, -inf);
+  EXPECT_EQ(log1p(RealInterval(-2, 1)).lo, -inf);
+  EXPECT_EQ(exp(RealInterval(-inf, 0)).lo, 0);
+  EXPECT_EQ(cos(RealInterval(3, 3.2)).lo, -1);
+  EXPECT_EQ(sin(RealInterval(1e9, 1e9)), RealInterval(-1, 1));
+  EXPECT_EQ(tan(RealInterval(1, 2)), RealInterval::whole());
+  EXPECT_TRUE(
+      atan2(RealInterval(-1, 1), RealInterval(-1, 1)).contains(RealInterval(-3.14159265, 3.14159265)));
+  EXPECT_LT(RealInterval(0.1L).lo, RealInterval(0.1L).hi) << "a long double that is no double";
+  EXPECT_EQ(RealInterval(0.5L).lo, RealInterval(0.5L).hi);
+  EXPECT_EQ(by_sign(RealInterval(-1, 1), RealInterval(2), RealInterval(5)), RealInterval(2, 5));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct AffineForm {
   double middle = 0;
   Slopes slope{};
   double error = 0;  // infinite: the range alone is known
-  Interval range;
+  RealInterval range;
   // Of positive values also their logarithm, as another form: products of many factors that rise and fall
   // against each other stay narrow there. Unknown where log_error is infinite.
   double log_middle = 0;
@@ -49,7 +49,7 @@ struct AffineForm {
   // Variable k, from lo to hi.
   static AffineForm variable(std::size_t k, double lo, double hi);
   // Anything in the range.
-  static AffineForm anything_in(Interval range);
+  static AffineForm anything_in(RealInterval range);
 
   friend AffineForm operator-(const AffineForm& a);
   friend AffineForm operator+(const AffineForm& a, const AffineForm& b);
@@ -81,7 +81,7 @@ AffineForm narrower(const AffineForm& a, const AffineForm& b);
 // x as it stands, or more or less by up to a share of itself.
 AffineForm widened(const AffineForm& x, double share);
 // alpha x + [lo, hi], which hold a function of x; `range`: all its values.
-AffineForm linear_enclosure(const AffineForm& x, double alpha, Interval offset, Interval range);
+AffineForm linear_enclosure(const AffineForm& x, double alpha, RealInterval offset, RealInterval range);
 // No less than every value of a - factor b, in exact arithmetic; factor >= 0. Infinite where nothing is known.
 double upper_of_difference(const AffineForm& a, double factor, const AffineForm& b);
 // The slopes of a - factor b.

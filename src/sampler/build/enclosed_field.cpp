@@ -46,8 +46,8 @@ EnclosedField::EnclosedField(const AnyBrdf& f, const PackedSampler& packed)
       packed_(packed) {}
 
 Elevations EnclosedField::elevations(CosineRange c) const {
-  const Interval longer = Interval(1) + Interval(-length_tolerance, length_tolerance);
-  const Interval theta = acos(Interval(c.lo, c.hi) / longer);
+  const RealInterval longer = RealInterval(1) + RealInterval(-length_tolerance, length_tolerance);
+  const RealInterval theta = acos(RealInterval(c.lo, c.hi) / longer);
   return {std::max(theta.lo, 0.), std::min(theta.hi, 0.5 * pi_v<double>)};
 }
 
@@ -65,17 +65,18 @@ AffineForm EnclosedField::albedo_over(const AffineForm& cosine) const {
   const double a = double(lo), b = double(hi);
   const double alpha =
       b > a ? (value(last, b) - value(first, a)) / (b - a) : double(table.pieces[first].slope);
-  Interval offset{infinity, -infinity}, range{infinity, -infinity};
+  RealInterval offset{infinity, -infinity}, range{infinity, -infinity};
   double rounding = 0;
   for (std::size_t i = first; i <= last; ++i) {
     for (const double c : {i == first ? a : double(x[i]), i == last ? b : double(x[i + 1])}) {
       const double v = value(i, c), product = std::abs(double(table.pieces[i].slope) * c);
       // fl(base + fl(slope c)), and the doubles here.
       rounding = std::max(rounding, (product + std::abs(v)) * 0x1.01p-24);
-      offset = hull(offset, Interval(v - alpha * c, v - alpha * c)), range = hull(range, Interval(v, v));
+      offset = hull(offset, RealInterval(v - alpha * c, v - alpha * c)),
+      range = hull(range, RealInterval(v, v));
     }
   }
-  const auto wider = [rounding](Interval r) { return Interval(r.lo - rounding, r.hi + rounding); };
+  const auto wider = [rounding](RealInterval r) { return RealInterval(r.lo - rounding, r.hi + rounding); };
   return linear_enclosure(cosine, alpha, wider(offset), wider(range));
 }
 
