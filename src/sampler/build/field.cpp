@@ -41,18 +41,14 @@ Domain domain_of(const Field& field, const Coordinates& at) {
   return domain;
 }
 
-// In the caller's frame.
-ShadingGeometry<float> geometry_for_caller(const Field& field, const FieldPoint& point,
+// In the caller's frame; `axis`: from the viewer's frame to it.
+ShadingGeometry<float> geometry_for_caller(const Field& field, Turn axis, const FieldPoint& point,
                                            const ShadingGeometry<float>& g) {
   const Turn t = turn_of(field, point.wo);
-  const auto turned = [&](Direction w) { return field.to_caller(turn(w, t.cosine, t.sine)); };
-  return {field.to_caller(point.wo),
-          turned(g.wi),
-          turned(g.wh),
-          g.cos_theta_o,
-          g.cos_theta_i,
-          g.cos_theta_h,
-          g.cos_theta_d};
+  const auto to_caller = [&](Direction w) { return turn(w, axis.cosine, axis.sine); };
+  const auto turned = [&](Direction w) { return to_caller(turn(w, t.cosine, t.sine)); };
+  return {to_caller(point.wo), turned(g.wi),  turned(g.wh), g.cos_theta_o,
+          g.cos_theta_i,       g.cos_theta_h, g.cos_theta_d};
 }
 
 }  // namespace
@@ -92,6 +88,7 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   std::vector<ShadingGeometry<float>> geometry(most * images);
   std::vector<float> values(geometry.size() * std::size_t(channels)), area(most);
   std::vector<Parameters> members(family ? geometry.size() : 0);
+  const Turn axis{cos(frame.axis), sin(frame.axis)};
   Domain member = domain;
   Parameters member_values{};
   const FieldPoint* last = nullptr;  // whose member is at hand
@@ -107,7 +104,8 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
         for (std::size_t i = 0; i < images; ++i) members[k * images + i] = member_values;
       }
       const DomainPoint q = lift(member, seen_by_domain(*this, point.wo), point.p);
-      geometry[k * images] = frame.isotropic() ? q.geometry : geometry_for_caller(*this, point, q.geometry);
+      geometry[k * images] =
+          frame.isotropic() ? q.geometry : geometry_for_caller(*this, axis, point, q.geometry);
       area[k] = q.projected_area;
       if (!both_sides) continue;
       ShadingGeometry<float>& mirrored = geometry[k * images + 1] = q.geometry;

@@ -51,6 +51,20 @@ bool is_outside(const std::vector<float>& x, float c) {
   return x.empty() || !(c >= x.front()) || c > x.back();
 }
 
+// The last segment that begins at or before phi_o, or the first.
+AlbedoSegment segment_at(const std::vector<float>& phi, float phi_o) {
+  AlbedoSegment segment{0, phi.size()};
+  for (std::size_t k = 1; k < phi.size(); ++k) {
+    if (phi[k] != phi[k - 1]) continue;
+    if (phi[k] > phi_o) {
+      segment.rows = k - segment.first;
+      break;
+    }
+    segment = {k, phi.size() - k};
+  }
+  return segment;
+}
+
 }  // namespace
 
 float albedo_at(const AlbedoTable& table, float c) {
@@ -67,10 +81,7 @@ float albedo_at(const AlbedoTable& table, float c, float phi_o) {
   if (is_outside(x, c)) return 0;
   const std::size_t i = node_before(x, c);
   const float t = (c - x[i]) / (x[i + 1] - x[i]);
-  AlbedoSegment segment{};
-  for (const AlbedoSegment& s : segments_of(table)) {
-    if (s.first == 0 || table.phi_o[s.first] <= phi_o) segment = s;
-  }
+  const AlbedoSegment segment = segment_at(table.phi_o, phi_o);
   const float begin = table.phi_o[segment.first], end = table.phi_o[segment.first + segment.rows - 1];
   const float at = clamp((phi_o - begin) / (end - begin), 0.f, 1.f) * float(segment.rows - 1);
   const std::size_t k = std::min(std::size_t(at), segment.rows - 2);
