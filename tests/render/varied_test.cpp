@@ -2,6 +2,7 @@
 // A roughness that varies over a floor, by the sampler of its family: what two materials show in turn.
 #include <gtest/gtest.h>
 
+#include "reflectree/render/materials/scattering_family.hpp"
 #include "small_scenes.hpp"
 
 namespace reflectree::render {
@@ -85,6 +86,24 @@ TEST(Varied, WhatIsOutsideOfTheRangeIsRefused) {
             std::string::npos);
   EXPECT_NE(refusal(varied(family, R"(<float name="alpha" value="0.5"/>)"), "cosine").find("--sampler exact"),
             std::string::npos);
+}
+
+TEST(Varied, ATexelThatIsNoNumberIsRefused) {
+  const AnyFamily any(
+      family([](Direction, Direction, const Parameters& p) { return p[0]; }, {{"rho", 0.1f, 0.3f}}));
+  BuildOptions quick;
+  quick.expected_trials = 2, quick.one_shot_variance = 0.2f, quick.albedo_error = 1e-2f;
+  const auto sampler = make_sampler(Family<AnyFamily>{any, any.ranges(), "grey"}, quick);
+  Texture texture;
+  const auto with = [&](float texel) {
+    Image image = make_image(2, 1, {"Y"});
+    image.values = {0.2f, texel};
+    texture.picture = std::make_shared<const Image>(std::move(image));
+    sampled_family(sampler, true, {texture});
+  };
+  EXPECT_NO_THROW(with(0.3f));
+  EXPECT_THROW(with(std::nanf("")), Error);
+  EXPECT_THROW(with(0.31f), Error);
 }
 
 }  // namespace

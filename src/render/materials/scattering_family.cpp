@@ -2,6 +2,7 @@
 #include "reflectree/render/materials/scattering_family.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adjoint.hpp"
 #include "reading/each.hpp"
@@ -84,6 +85,10 @@ void check(const Texture& texture, const ParameterRange& range, const std::strin
         return std::pair(*a, *b);
       }()
                       : std::pair(texture.colour.r, texture.colour.r);
+  const bool finite =
+      !texture.picture || std::all_of(texture.picture->values.begin(), texture.picture->values.end(),
+                                      [](float v) { return std::isfinite(v); });
+  if (!finite) throw Error(range.name + " is a picture with a NaN or an infinity", family, "stay " + within);
   if (range.contains(low) && range.contains(high)) return;
   const std::string found =
       low == high ? shortest_text(low) : shortest_text(low) + " to " + shortest_text(high);
