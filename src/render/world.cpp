@@ -16,19 +16,24 @@ float largest(Point p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs
 PathVertex::PathVertex(const Scene& scene, const Hit& hit, Point origin, Direction direction)
     : on(interaction_at(scene, hit, origin, direction)),
       surface(&scene.surfaces[on.surface]),
-      frame(frame_from_normal(on.shading)) {
+      frame(frame_from_normal(on.shading)),
+      wo(to_local(frame, -direction)) {
   const Scattering::Asks asks = surface->scattering->asks();
-  if (asks != Scattering::Asks::nothing) {
-    const Tangents along = tangents_at(scene, hit, on);
-    frame = frame_along(on.shading, along.du);
-    if (asks == Scattering::Asks::detail) {
-      detail.emplace();
-      detail->attributes = attributes_at(scene, hit);
-      detail->du = to_local(frame, along.du), detail->dv = to_local(frame, along.dv);
-      detail->face = to_local(frame, on.face);
-    }
-  }
+  if (asks != Scattering::Asks::nothing)
+    follow_texture(scene, hit, direction, asks == Scattering::Asks::detail);
+}
+
+// Apart from the constructor: most materials do not ask for it.
+[[gnu::noinline]] void PathVertex::follow_texture(const Scene& scene, const Hit& hit, Direction direction,
+                                                  bool in_detail) {
+  const Tangents along = tangents_at(scene, hit, on);
+  frame = frame_along(on.shading, along.du);
   wo = to_local(frame, -direction);
+  if (!in_detail) return;
+  detail.emplace();
+  detail->attributes = attributes_at(scene, hit);
+  detail->du = to_local(frame, along.du), detail->dv = to_local(frame, along.dv);
+  detail->face = to_local(frame, on.face);
 }
 
 Scattering::Value PathVertex::value(Direction wi) const {

@@ -110,7 +110,14 @@ struct CameraLine {
   Point origin;
   Direction direction;
 };
-CameraLine line_through(const Camera& camera, float x, float y, Vec2<double> on_lens = {0, 0});
+inline CameraLine line_through(const Camera& c, float x, float y, Vec2<double> on_lens = {0, 0}) {
+  const float px = 1 - 2 * (x + c.shift_x), py = 1 - 2 * (y + c.shift_y);
+  if (c.parallel) return {c.origin + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up, c.forward};
+  const Direction towards = c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up;
+  if (!(c.lens > 0)) return {c.origin, normalize(towards)};
+  const Direction from = (c.lens * float(on_lens.x)) * c.left + (c.lens * float(on_lens.y)) * c.up;
+  return {c.origin + from, normalize(c.focus * towards - from)};
+}
 
 // What weighs a camera ray by its place about a pixel's centre.
 struct Filter {

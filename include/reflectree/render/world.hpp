@@ -39,6 +39,9 @@ struct PathVertex {
   Rgb emitted() const { return wo.z > 0 ? radiance_of(*surface, on.uv) : Rgb{}; }
   // Valid as long as the vertex stays where it is.
   Place place() const { return {on.uv, detail ? &*detail : nullptr}; }
+
+ private:
+  void follow_texture(const Scene& scene, const Hit& hit, Direction direction, bool in_detail);
 };
 
 struct World {

@@ -85,19 +85,6 @@ std::uint64_t identity_of(const Scene& s, const RenderOptions& o) {
   return fnv(std::to_string(o.seed), h);
 }
 
-}  // namespace
-
-CameraLine line_through(const Camera& c, float x, float y, Vec2<double> on_lens) {
-  const float px = 1 - 2 * (x + c.shift_x), py = 1 - 2 * (y + c.shift_y);
-  if (c.parallel) return {c.origin + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up, c.forward};
-  const Direction towards = c.forward + (px * c.tan_x) * c.left + (py * c.tan_y) * c.up;
-  if (!(c.lens > 0)) return {c.origin, normalize(towards)};
-  const Direction from = (c.lens * float(on_lens.x)) * c.left + (c.lens * float(on_lens.y)) * c.up;
-  return {c.origin + from, normalize(c.focus * towards - from)};
-}
-
-namespace {
-
 // Pixels that are rendered together, a sample of each at a time: what meets in packets of rays depends on
 // nothing else.
 constexpr int tile_size = 32;

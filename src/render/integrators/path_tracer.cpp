@@ -36,7 +36,7 @@ struct PathTracer::Wave {
   std::vector<std::optional<Hit>> hits;
   std::vector<Direction> escaped, wi;
   std::vector<Environment::Light> sky;
-  std::vector<std::uint32_t> order, starts;
+  std::vector<std::uint32_t> groups, order, starts;  // groups: of what the hits are on
   std::vector<PathVertex> vertices;
   std::vector<Scattering::View> views;
   std::vector<Point> points;
@@ -67,6 +67,7 @@ PathTracer::PathTracer(const Scene& scene, Technique technique) : world_(scene),
 void PathTracer::radiance(std::span<CameraRay> rays, std::span<Rgb> out) const {
   Wave wave;
   std::fill_n(out.begin(), rays.size(), Rgb{});
+  wave.paths.reserve(rays.size()), wave.rays.reserve(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     wave.paths.push_back({&rays[i].bits, &out[i]});
     wave.rays.push_back(world_.camera_ray(rays[i].origin, rays[i].direction));
@@ -98,10 +99,10 @@ void PathTracer::meet(Wave& wave, int depth) const {
       share = technique_ == Technique::light ? 0 : heuristic(technique_, p.drawn_pdf, other);
     *p.result = *p.result + share * (p.throughput * radiance);
   };
-  wave.escaped.clear();
+  wave.escaped.clear(), wave.groups.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     if (wave.hits[i]) {
-      ++wave.starts[group_[surface_of(scene, *wave.hits[i])] + 1];
+      ++wave.starts[(wave.groups[i] = group_[surface_of(scene, *wave.hits[i])]) + 1];
     } else if (sky) {
       wave.escaped.push_back(wave.rays[i].direction);
     }
@@ -117,15 +118,17 @@ void PathTracer::meet(Wave& wave, int depth) const {
   for (std::size_t g = 0; g < groups_; ++g) wave.starts[g + 1] += wave.starts[g];
   wave.order.resize(wave.starts[groups_]);
   for (std::size_t i = 0; i < n; ++i) {
-    if (wave.hits[i]) wave.order[wave.starts[group_[surface_of(scene, *wave.hits[i])]]++] = std::uint32_t(i);
+    if (wave.hits[i]) wave.order[wave.starts[wave.groups[i]]++] = std::uint32_t(i);
   }
-  wave.met.clear(), wave.vertices.clear(), wave.views.clear(), wave.points.clear(), wave.bits.clear();
-  wave.vertices.reserve(wave.order.size());  // views point into them
-  for (const std::uint32_t i : wave.order) {
-    const Path& p = wave.met.emplace_back(wave.paths[i]);
+  const std::size_t met = wave.order.size();
+  wave.met.resize(met), wave.views.resize(met), wave.points.resize(met), wave.bits.resize(met);
+  wave.vertices.clear(), wave.vertices.reserve(met);  // views point into them
+  for (std::size_t k = 0; k < met; ++k) {
+    const std::uint32_t i = wave.order[k];
+    const Path& p = wave.met[k] = wave.paths[i];
     const Ray& ray = wave.rays[i];
     const PathVertex& at = wave.vertices.emplace_back(scene, *wave.hits[i], ray.origin, ray.direction);
-    wave.views.push_back({at.wo, at.place()}), wave.points.push_back(at.on.at), wave.bits.push_back(p.bits);
+    wave.views[k] = {at.wo, at.place()}, wave.points[k] = at.on.at, wave.bits[k] = p.bits;
     if (const Rgb emitted = at.emitted(); emitted != Rgb{}) {
       const bool competes = p.drawn_pdf > 0;
       add(p, emitted, competes ? world_.lights.pdf(ray.origin, ray.direction, *wave.hits[i], at.on) : 0);

@@ -123,7 +123,7 @@ Environment::Sky::Aim Environment::Sky::aim(PathBits& u) const {
   return {y, y * w + std::size_t(share * float(w)), share, s, to_unit_float(u())};
 }
 
-std::size_t Environment::Sky::column(const Aim& aim) const {
+REFLECTREE_INLINE std::size_t Environment::Sky::column(const Aim& aim) const {
   const auto w = std::size_t(width);
   return guided(columns.data() + aim.y * w, w, first_column[aim.guide], aim.share);
 }

@@ -17,6 +17,7 @@ namespace {
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
 bool shines(Rgb c) { return c.r + c.g + c.b > 0; }
+bool pictured(const Surface& surface) { return bool(surface.shine); }
 
 // 1 - cos of the cone that a sphere fills, seen from outside; sin^2 / (1 + cos) does not cancel. 0 inside.
 double cone_of(const Sphere& s, double distance2) {
@@ -98,7 +99,8 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
     if (!shines(scene.surfaces[t.surface].radiance)) continue;
     if (light_of[t.surface] == std::size_t(-1)) {
       light_of[t.surface] = lights_.size();
-      lights_.push_back({Kind::mesh, t.surface, scene.surfaces[t.surface].radiance, 0, {}, {}});
+      const Surface& surface = scene.surfaces[t.surface];
+      lights_.push_back({Kind::mesh, t.surface, surface.radiance, 0, pictured(surface), {}, {}});
     }
     const Point a = scene.vertices[t.corner[0]].at;
     const Direction ab = scene.vertices[t.corner[1]].at - a, ac = scene.vertices[t.corner[2]].at - a;
@@ -106,13 +108,13 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
     Light& light = lights_[light_of[t.surface]];
     light.parts.push_back({i, a, ab, ac, facing(scene, t)}), light.cdf.push_back(area_[t.surface]);
   }
-  const auto add = [&](Kind kind, std::size_t i, Rgb radiance, double area) {
-    lights_.push_back({kind, std::uint32_t(i), radiance, float(1 / area), {}, {}});
+  const auto add = [&](Kind kind, std::size_t i, Rgb radiance, double area, bool picture = false) {
+    lights_.push_back({kind, std::uint32_t(i), radiance, float(1 / area), picture, {}, {}});
   };
   const auto add_shining = [&](Kind kind, const auto& shapes, const auto& area) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const Rgb radiance = scene.surfaces[shapes[i].surface].radiance;
-      if (shines(radiance)) add(kind, i, radiance, area(shapes[i]));
+      const Surface& surface = scene.surfaces[shapes[i].surface];
+      if (shines(surface.radiance)) add(kind, i, surface.radiance, area(shapes[i]), pictured(surface));
     }
   };
   add_shining(Kind::sphere, scene.spheres, [](const Sphere&) { return 1; });
@@ -130,7 +132,7 @@ Lights::Lights(const Scene& scene) : scene_(scene), area_(scene.surfaces.size())
   }
 }
 
-const Lights::Light& Lights::chosen(PathBits& u) const {
+REFLECTREE_INLINE const Lights::Light& Lights::chosen(PathBits& u) const {
   return lights_[std::size_t((std::uint64_t(u()) * lights_.size()) >> 32U)];
 }
 
@@ -172,8 +174,8 @@ void Lights::sample(std::span<const Point> at, std::span<PathBits* const> u,
 
 void Lights::look_up(const Hit& hit, Point at, std::optional<LightSample>& s) const {
   if (!s) return;
-  const Surface& surface = scene_.surfaces[surface_of(scene_, hit)];
-  if (surface.shine) s->radiance = radiance_of(surface, interaction_at(scene_, hit, at, s->direction).uv);
+  const Interaction on = interaction_at(scene_, hit, at, s->direction);
+  s->radiance = radiance_of(scene_.surfaces[on.surface], on.uv);
 }
 
 // In place: `s` is empty before.
@@ -188,25 +190,25 @@ void Lights::sample_light(const Light& light, Point at, PathBits& u, std::option
         normal = interaction_at(scene_, hit, {}, {}).normal();
       }
       s = sample_area(at, part.at + b * part.ab + c * part.ac, normal, light.density, light.radiance);
-      look_up({Hit::Kind::triangle, part.triangle, 0, double(b), double(c)}, at, s);
+      if (light.pictured) look_up({Hit::Kind::triangle, part.triangle, 0, double(b), double(c)}, at, s);
       break;
     }
     case Light::Kind::sphere:
       s = sample_sphere(scene_.spheres[light.index], at, share_, light.radiance, u);
-      look_up({Hit::Kind::sphere, light.index, s ? s->distance : 0, 0, 0}, at, s);
+      if (light.pictured) look_up({Hit::Kind::sphere, light.index, s ? s->distance : 0, 0, 0}, at, s);
       break;
     case Light::Kind::rectangle: {
       const Flat& r = scene_.rectangles[light.index];
       const auto [x, y] = in_rectangle(u);
       s = sample_area(at, point_on(r, x, y), r.normal, light.density, light.radiance);
-      look_up({Hit::Kind::rectangle, light.index, 0, x, y}, at, s);
+      if (light.pictured) look_up({Hit::Kind::rectangle, light.index, 0, x, y}, at, s);
       break;
     }
     case Light::Kind::disk: {
       const Flat& d = scene_.disks[light.index];
       const auto [x, y] = in_disk(u);
       s = sample_area(at, point_on(d, x, y), d.normal, light.density, light.radiance);
-      look_up({Hit::Kind::disk, light.index, 0, x, y}, at, s);
+      if (light.pictured) look_up({Hit::Kind::disk, light.index, 0, x, y}, at, s);
       break;
     }
     case Light::Kind::cylinder: {
@@ -216,7 +218,7 @@ void Lights::sample_light(const Light& light, Point at, PathBits& u, std::option
                          n = (c.inwards ? -1 : 1) * normalize(out);
       s = sample_area(at, {float(p.x), float(p.y), float(p.z)}, {float(n.x), float(n.y), float(n.z)},
                       light.density, light.radiance);
-      look_up({Hit::Kind::cylinder, light.index, s ? s->distance : 0, 0, 0}, at, s);
+      if (light.pictured) look_up({Hit::Kind::cylinder, light.index, s ? s->distance : 0, 0, 0}, at, s);
       break;
     }
     case Light::Kind::point: {

@@ -23,6 +23,24 @@ Direction visible_ggx(Direction v, float u1, float u2) {
   return p1 * t1 + p2 * t2 + std::sqrt(max(0.f, 1 - p1 * p1 - p2 * p2)) * v;
 }
 
+// 2 / (1 + erf a + exp(-a^2) / (a sqrt pi)) of a = over / under; 1 where a > 5
+REFLECTREE_INLINE float beckmann_masking(float over, float under) {
+  const float a = over / under;
+  if (over > 5 * under) return 1;
+  return 2 / (2 + exp_of_negative(-a * a) * (inverse_root_pi * (under / over) - scaled_erfc(over, under)));
+}
+
+// With two widths.
+[[gnu::noinline]] float distribution(const Roughness& r, Direction wh) {
+  return r.kind == Roughness::Kind::ggx ? ggx_distribution(wh, r.alpha) : beckmann_distribution(wh, r.alpha);
+}
+
+// With two widths, `under` is the projected width times the sine.
+[[gnu::noinline]] float masking(Roughness::Kind kind, float over, float under) {
+  return kind == Roughness::Kind::ggx ? 2 / (1 + std::sqrt(1 + sqr(under / over)))
+                                      : beckmann_masking(over, under);
+}
+
 }  // namespace
 
 Microfacets::Microfacets(Roughness roughness) : roughness_(roughness) {
@@ -32,10 +50,7 @@ Microfacets::Microfacets(Roughness roughness) : roughness_(roughness) {
 float Microfacets::d(Direction wh) const {
   if (!(wh.z > 0)) return 0;
   const float alpha = roughness_.alpha.x;
-  if (!roughness_.alpha.round()) {
-    return roughness_.kind == Roughness::Kind::ggx ? ggx_distribution(wh, roughness_.alpha)
-                                                   : beckmann_distribution(wh, roughness_.alpha);
-  }
+  if (!roughness_.alpha.round()) return distribution(roughness_, wh);
   if (roughness_.kind == Roughness::Kind::ggx) return ggx_distribution(wh, alpha);
   if (sin2_theta(wh) > 80 * sqr(alpha * wh.z)) return 0;  // spares the underflow
   return beckmann_distribution(wh, alpha, exp_of_negative);
@@ -44,16 +59,10 @@ float Microfacets::d(Direction wh) const {
 float Microfacets::g1(Direction w) const {
   if (!(w.z > 0)) return 0;
   const float alpha = roughness_.alpha.x;
-  // alpha^2 sin^2 theta, with two widths
-  const auto widened = [&] { return sqr(alpha * w.x) + sqr(roughness_.alpha.y * w.y); };
-  const bool round = roughness_.alpha.round();
-  if (roughness_.kind == Roughness::Kind::ggx)
-    return round ? ggx_masking(w, alpha) : 2 / (1 + std::sqrt(1 + widened() / sqr(w.z)));
-  // 2 / (1 + erf a + exp(-a^2) / (a sqrt pi)) of a = over / under; 1 where a > 5
-  const float over = w.z, under = round ? alpha * std::sqrt(sin2_theta(w)) : std::sqrt(widened()),
-              a = over / under;
-  if (over > 5 * under) return 1;
-  return 2 / (2 + exp_of_negative(-a * a) * (inverse_root_pi * (under / over) - scaled_erfc(over, under)));
+  if (!roughness_.alpha.round())
+    return masking(roughness_.kind, w.z, std::sqrt(sqr(alpha * w.x) + sqr(roughness_.alpha.y * w.y)));
+  if (roughness_.kind == Roughness::Kind::ggx) return ggx_masking(w, alpha);
+  return beckmann_masking(w.z, alpha * std::sqrt(sin2_theta(w)));
 }
 
 float Microfacets::pdf(Direction wo, Direction wh, float d, float g1_o) const {

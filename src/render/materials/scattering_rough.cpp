@@ -18,6 +18,7 @@ struct RoughConductor final : Each<RoughConductor> {
   Rgb eta, k;
   Texture specular, alpha_x, alpha_y;
   bool one_width;  // along x and y
+  Asks asked;
   RoughConductor(Roughness r, Rgb e, Rgb absorption, Texture t, Texture x, Texture y)
       : roughness(r),
         eta(e),
@@ -25,11 +26,10 @@ struct RoughConductor final : Each<RoughConductor> {
         specular(std::move(t)),
         alpha_x(std::move(x)),
         alpha_y(std::move(y)),
-        one_width(varies(alpha_x) || varies(alpha_y) ? alpha_x == alpha_y : r.alpha.round()) {}
-  Asks asks() const override {
-    return std::max(
-        {one_width ? Asks::nothing : Asks::frame, asks_for(specular), asks_for(alpha_x), asks_for(alpha_y)});
-  }
+        one_width(varies(alpha_x) || varies(alpha_y) ? alpha_x == alpha_y : r.alpha.round()),
+        asked(std::max({one_width ? Asks::nothing : Asks::frame, asks_for(specular), asks_for(alpha_x),
+                        asks_for(alpha_y)})) {}
+  Asks asks() const override { return asked; }
   Microfacets normals_at(Place place) const {
     Roughness here = roughness;
     if (varies(alpha_x)) here.alpha.x = eval(alpha_x, place).r;

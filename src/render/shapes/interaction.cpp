@@ -101,7 +101,7 @@ Vec3<double> on_unit(const Cylinder& c, Vec3<double> at) {
   return {x * over, y * over, clamp(dot(from, c.axis) / dot(c.axis, c.axis), 0., 1.)};
 }
 
-Interaction on_cylinder(const Cylinder& c, Point about) {
+[[gnu::noinline]] Interaction on_cylinder(const Cylinder& c, Point about) {
   const Vec3<double> local = on_unit(c, to_double(about)), out = local.x * c.s + local.y * c.t;
   const Direction n = to_floats((c.inwards ? -1 : 1) * normalize(out));
   const float turn = std::atan2(float(local.y), float(local.x)) / (2 * pi);

@@ -42,10 +42,11 @@ class Lights {
     std::uint32_t index;  // among its kind; of a mesh, its surface
     Rgb radiance;         // of surfaces
     float density;        // of their points, per area, times share_
+    bool pictured;        // not alike all over
     std::vector<Part> parts;
     std::vector<double> cdf;  // of their areas
   };
-  // Of a lamp that is not alike all over, where it was drawn.
+  // Of a pictured lamp, where it was drawn.
   void look_up(const Hit& hit, Point at, std::optional<LightSample>& s) const;
   const Light& chosen(PathBits& u) const;
   void sample_light(const Light& light, Point at, PathBits& u, std::optional<LightSample>& s) const;
