@@ -15,6 +15,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/format_table.hpp"
+#include "reflectree/formats/open_brdf.hpp"
 #include "reflectree/text/joined_words.hpp"
 
 namespace reflectree::cli {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reflectree/formats/open.hpp"
+#include "reflectree/formats/file_places.hpp"
 #include "reflectree/host.hpp"
 
 namespace reflectree::cli {

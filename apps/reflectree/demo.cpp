@@ -11,6 +11,7 @@
 #include "pictures.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/formats/open.hpp"
 #include "reflectree/formats/sampler_file.hpp"
 
 namespace reflectree::cli {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // doctor: judges eval, sample and pdf of anybody's sampler and says in words what is wrong: ours and peers by
 // name, or a program on a pipe.
+#include "reflectree/formats/open.hpp"
 #include "reflectree/verify/doctor.hpp"
 
 #include <cmath>

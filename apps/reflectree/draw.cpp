@@ -9,6 +9,7 @@
 #include "pictures.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/formats/open.hpp"
 
 namespace reflectree::cli {
 

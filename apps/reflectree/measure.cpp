@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "reflectree/error.hpp"
+#include "reflectree/formats/open.hpp"
 #include "reflectree/text/number_text.hpp"
 #include "reflectree/verify/trials.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "suspects.hpp"
 
+#include "reflectree/formats/open.hpp"
 #include "reflectree/verify/faults.hpp"
 
 namespace reflectree::cli {

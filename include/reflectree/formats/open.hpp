@@ -3,44 +3,16 @@
 // BRDF, and a BRDF with its sampler.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "reflectree/brdf/material/material.hpp"
-#include "reflectree/formats/bytes.hpp"
+#include "reflectree/formats/open_brdf.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/build.hpp"
 #include "reflectree/sampler/family_sampler.hpp"
 
 namespace reflectree {
-
-// Where the files of a text are looked for: as named; beside the file `beside`; in the folder `data`. What is
-// found elsewhere keeps its name in texts and errors.
-struct FilePlaces {
-  std::string data;    // empty: none
-  std::string beside;  // a file, such as the sampler whose material is meant; empty: none
-  // Told of a file that was found under another path than its own.
-  std::function<void(const std::string& path, const std::string& found)> elsewhere = nullptr;
-
-  // The path itself where the file is nowhere.
-  std::string find(const std::string& path) const;
-  FilePlaces with_neighbours_of(const std::string& file) const;
-};
-
-// Whether the text names a sampler file; what else it is, parsing tells.
-bool names_sampler_file(const std::string& text, const FilePlaces& places);
-
-// Material text, or the path of a file of one material. Throws Error.
-Material parse_material(const std::string& text, const FilePlaces& places);
-// The bytes of a file that a material names. Throws Error.
-Bytes read_material_file(const std::string& path, const FilePlaces& places);
-// The BRDF of a material whose files lie there. Throws Error.
-AnyBrdf make_brdf(const Material& material, const FilePlaces& places);
-
-// The BRDF of a material's text, or that of a sampler file. Throws Error.
-AnyBrdf open_brdf(const std::string& text, const FilePlaces& places = {});
 
 // What faces work on: a BRDF with its sampler.
 struct OpenedSampler {
