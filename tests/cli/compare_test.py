@@ -2,9 +2,13 @@
 """compare: the same figures whatever the threads or the interruptions; files; every way to go wrong."""
 import csv
 import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
 import unittest
 
-from program import ProgramTest
+from program import PROGRAM, ProgramTest, environment
 
 TWO = ["compare", "lambert", "ggx:alpha=0.4", "--quick", "--samplers", "exact,one-shot", "--theta-o-deg", "20"]
 TIMES = {"sample_ns", "pdf_ns", "floor_ns", "build_seconds"}
@@ -24,8 +28,22 @@ class Compare(ProgramTest):
         self.assertTrue(words.startswith("error: ") and "; " in words, words)
         self.assertIn(expected, words)
 
+    @classmethod
+    def setUpClass(cls):
+        """One run that is kept, with files, for all tests that need a whole one."""
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.first = pathlib.Path(holder.name)
+        done = subprocess.run([PROGRAM, "--json", *TWO, "--threads", "1", "--resume", "kept", "--csv", "c.csv", "--html",
+                               "c.html"], cwd=cls.first, env=environment(), stdin=subprocess.DEVNULL,
+                              capture_output=True, timeout=300, check=True)
+        cls.whole = json.loads(done.stdout)
+
+    def keep_first(self):
+        return pathlib.Path(shutil.copytree(self.first / "kept", self.folder / "kept"))
+
     def test_threads_do_not_matter_but_the_seed_does(self):
-        a, b, c = (self.json_of(*TWO, *more) for more in (["--threads", 1], ["--threads", 2], ["--seed", 2]))
+        a, b, c = self.whole, self.json_of(*TWO, "--threads", 2), self.json_of(*TWO, "--seed", 2)
         self.assertEqual(without_times(a["materials"]), without_times(b["materials"]))
         self.assertNotEqual(without_times(a["materials"]), without_times(c["materials"]))
         self.assertEqual(a["options"]["seed"], 1)
@@ -33,21 +51,19 @@ class Compare(ProgramTest):
             self.assertTrue(a[key], key)
 
     def test_resumed_is_uninterrupted(self):
-        whole = self.json_of(*TWO, "--resume", "kept")
-        kept = sorted((self.folder / "kept").iterdir())
+        kept = sorted(self.keep_first().iterdir())
         self.assertEqual(len(kept), 2)
         again = self.json_of(*TWO, "--resume", "kept")
-        self.assertEqual(whole["materials"], again["materials"])  # the timings, too: nothing was measured
+        self.assertEqual(self.whole["materials"], again["materials"])  # the timings, too: nothing was measured
         kept[0].unlink()
         partly = self.json_of(*TWO, "--resume", "kept")
-        self.assertEqual(without_times(whole["materials"]), without_times(partly["materials"]))
-        self.assertNotEqual(whole["materials"], partly["materials"])
+        self.assertEqual(without_times(self.whole["materials"]), without_times(partly["materials"]))
+        self.assertNotEqual(self.whole["materials"], partly["materials"])
 
     def test_kept_results_of_other_settings_are_refused(self):
-        self.run_program(*TWO, "--resume", "kept")
+        path = next(self.keep_first().iterdir())
         self.assert_error("differ in seed;", *TWO, "--resume", "kept", "--seed", "2")
         self.assert_error("differ in samplers;", *TWO[:4], "--theta-o-deg", "20", "--resume", "kept")
-        path = next((self.folder / "kept").iterdir())
         kept = json.loads(path.read_text(encoding="utf-8"))
         other = {setting: "another" for setting in ("commit", "version", "machine")}
         path.write_text(json.dumps({**kept, "made_by": {**kept["made_by"], **other}}), encoding="utf-8")
@@ -58,13 +74,12 @@ class Compare(ProgramTest):
         self.assert_error("no result of compare", *TWO, "--resume", "kept")
 
     def test_files(self):
-        self.run_program(*TWO, "--csv", "c.csv", "--html", "c.html")
-        with open(self.folder / "c.csv", newline="", encoding="utf-8") as file:
+        with open(self.first / "c.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 2 * 2)
         exact = next(r for r in rows if r["material"] == "lambert" and r["sampler"] == "exact")
         self.assertLess(float(exact["target_variance"]), 1e-9)
-        page = (self.folder / "c.html").read_text(encoding="utf-8")
+        page = (self.first / "c.html").read_text(encoding="utf-8")
         self.assertNotIn("<script", page)
         self.assertNotIn("http", page)
         self.assertIn("ggx:alpha=0.4", page)
