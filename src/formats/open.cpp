@@ -25,6 +25,21 @@ OpenedSampler assemble(const std::string& text, AnyBrdf f, SamplerData data, con
   return {text, std::move(f), std::move(data), std::move(packed), std::move(sampler), places, "", {}, {}};
 }
 
+AnyFamily family_of(const std::string& text, const FilePlaces& places) {
+  return make_family(parse_material(text, places), [&](const std::string& file, const std::string& member) {
+    return read_brdf(read_material_file(file, places), file, member);
+  });
+}
+
+OpenedFamily assemble(const std::string& text, AnyFamily family, SamplerData data, const FilePlaces& places) {
+  auto packed = std::make_shared<const PackedSampler>(pack(data));
+  auto shared = std::make_shared<const Family<AnyFamily>>(
+      Family<AnyFamily>{family, family.ranges(), family.traits().name});
+  FamilySampler<AnyFamily> sampler{{shared, packed}, {shared, packed}};
+  return {text, std::move(family), std::move(data), std::move(packed), std::move(sampler), places, "", {},
+          {}};
+}
+
 }  // namespace
 
 OpenedSampler build_named_sampler(const std::string& text, AnyBrdf f, const FilePlaces& places,
@@ -42,33 +57,27 @@ bool names_family(const std::string& text, const FilePlaces& places) {
   return is_family(parse_material(text, places));
 }
 
+OpenedFamily open_family(SamplerData data, const FilePlaces& places) {
+  AnyFamily family = family_of(data.material, places);
+  check_identity(data, family);
+  const std::string text = data.material;
+  return assemble(text, std::move(family), std::move(data), places);
+}
+
 OpenedFamily open_family(const std::string& text, const FilePlaces& places, const BuildOptions& options,
                          const Host& host) {
-  const bool saved = names_sampler_file(text, places);
-  const std::string path = saved ? places.find(text) : "";
-  const FilePlaces around = saved ? places.with_neighbours_of(path) : places;
-  SamplerData data;
-  if (saved) data = load_sampler(path);
-  const Material material = parse_material(saved ? data.material : text, around);
-  AnyFamily family = make_family(material, [&](const std::string& file, const std::string& member) {
-    return read_brdf(read_material_file(file, around), file, member);
-  });
-  std::optional<double> seconds;
-  if (saved) {
-    check_identity(data, family);
-  } else {
-    const auto start = std::chrono::steady_clock::now();
-    data = build(family, options, host);
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (names_sampler_file(text, places)) {
+    const std::string path = places.find(text);
+    OpenedFamily opened = open_family(load_sampler(path), places.with_neighbours_of(path));
+    opened.text = text, opened.sampler_file = path, opened.file_size = fs::file_size(path);
+    return opened;
   }
-  auto packed = std::make_shared<const PackedSampler>(pack(data));
-  auto shared = std::make_shared<const Family<AnyFamily>>(
-      Family<AnyFamily>{family, family.ranges(), family.traits().name});
-  FamilySampler<AnyFamily> sampler{{shared, packed}, {shared, packed}};
-  OpenedFamily opened{
-      text,   std::move(family), std::move(data), std::move(packed), std::move(sampler), around, path, {},
-      seconds};
-  if (saved) opened.file_size = fs::file_size(path);
+  AnyFamily family = family_of(text, places);
+  const auto start = std::chrono::steady_clock::now();
+  SamplerData data = build(family, options, host);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  OpenedFamily opened = assemble(text, std::move(family), std::move(data), places);
+  opened.build_seconds = took.count();
   return opened;
 }
 

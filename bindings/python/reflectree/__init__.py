@@ -21,6 +21,7 @@ from ._checks import Check, Figure
 from ._conventions import direction, from_angles, function_of_angles, mitsuba_order, swapped, without_cosine
 from ._doctor import Diagnosis, Evidence, Finding, causes, doctor, samplers
 from ._error import BuildWarning, Error
+from ._family import FamilySampler, load_family
 from ._sampler import BuildReport, Sampler, load_sampler
 from ._studio import Comparison, RenderWarning, compare, render
 from ._tables import Tables
@@ -29,8 +30,8 @@ from ._verify import VerifyReport, verify
 __version__: str = _core.version
 
 __all__ = [
-    "Brdf", "BuildReport", "BuildWarning", "Check", "Comparison", "Diagnosis", "Error", "Evidence", "Figure",
-    "Finding", "RenderWarning", "Sampler", "Samples", "Tables", "VerifyReport", "causes", "compare", "direction",
-    "doctor", "from_angles", "function", "function_of_angles", "load", "load_sampler", "material", "members",
+    "Brdf", "BuildReport", "BuildWarning", "Check", "Comparison", "Diagnosis", "Error", "Evidence", "FamilySampler",
+    "Figure", "Finding", "RenderWarning", "Sampler", "Samples", "Tables", "VerifyReport", "causes", "compare", "direction",
+    "doctor", "from_angles", "function", "function_of_angles", "load", "load_family", "load_sampler", "material", "members",
     "mitsuba_order", "models", "plot", "render", "samplers", "swapped", "verify", "without_cosine",
 ]

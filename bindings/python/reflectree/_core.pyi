@@ -10,6 +10,7 @@ has_judges: bool
 def list_members(path: str) -> List[str]: ...
 def model_names() -> List[str]: ...
 def sampler_file_material(path: str) -> str: ...
+def names_family(text: str) -> bool: ...
 
 class Brdf:
     name: str
@@ -26,6 +27,7 @@ class Brdf:
     def eval(self, wo: Array, wi: Array, out: Array, cosine: bool) -> None: ...
 
 class Sampler:
+    brdf: Brdf
     report: Dict[str, Any]
     material: str
     domain: str
@@ -93,6 +95,60 @@ class Sampler:
     def draw_one(self, wo: List[float], u1: float, u2: float) -> List[float]: ...
     def density_one(self, wo: List[float], wi: List[float]) -> float: ...
     def leaves(self, one_shot: bool, x: float, y: float, z: float) -> List[Any]: ...
+
+class Family:
+    name: str
+    channels: int
+    ranges: Dict[str, Tuple[float, float]]
+    report: Dict[str, Any]
+    nbytes: int
+    leaf_counts: Tuple[int, int]
+    @staticmethod
+    def build(
+        text: str,
+        *,
+        target: str,
+        channel: int,
+        expected_trials: float,
+        one_shot_variance: float,
+        albedo_error: float,
+        seed: int,
+        max_evaluations: int,
+        threads: int,
+        progress: Optional[Callable[[float, str], Any]],
+    ) -> Family: ...
+    @staticmethod
+    def from_file(path: str) -> Family: ...
+    @staticmethod
+    def from_bytes(bytes: bytes, where: str) -> Family: ...
+    def to_bytes(self) -> bytes: ...
+    def save(self, path: str) -> None: ...
+    def sample(
+        self,
+        one_shot: bool,
+        wo: Array,
+        parameters: Array,
+        u: Optional[Array],
+        seed: int,
+        stream: int,
+        wi: Array,
+        pdf: Array,
+        weight: Array,
+        valid: Array,
+    ) -> None: ...
+    def eval_pdf(
+        self,
+        one_shot: bool,
+        wo: Array,
+        wi: Array,
+        parameters: Array,
+        f: Optional[Array],
+        pdf: Optional[Array],
+        cosine: bool,
+    ) -> None: ...
+    def albedo(self, wo: Array, parameters: Array, out: Array) -> None: ...
+    def expected_trials(self, wo: Array, parameters: Array, out: Array) -> None: ...
+    def member(self, parameters: List[float]) -> Sampler: ...
 
 # Where has_judges is true.
 

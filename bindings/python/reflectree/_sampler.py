@@ -91,15 +91,13 @@ class Sampler:
                  max_evaluations: int = 240_000_000, threads: Optional[int] = None,
                  progress: Progress = None) -> None:
         f = as_brdf(brdf)
-        channel = 0
-        if not isinstance(target, str):
-            channel, target = as_count(target, "target"), "channel"
-            if channel >= f.channels:
-                raise Error(f"channel {channel} of {f.channels}", "target", f"say 0 to {f.channels - 1}")
+        name, channel = _target(target)
+        if channel >= f.channels:
+            raise Error(f"channel {channel} of {f.channels}", "target", f"say 0 to {f.channels - 1}")
         started = time.perf_counter()
         with opened(progress) as tell:
             core = _core.Sampler.build(
-                f._core, target=target, channel=channel, expected_trials=expected_trials,
+                f._core, target=name, channel=channel, expected_trials=expected_trials,
                 one_shot_variance=one_shot_variance, albedo_error=albedo_error, seed=seed,
                 max_evaluations=max_evaluations, threads=as_count(threads or 0, "threads"), progress=tell)
         self._take(f, core, time.perf_counter() - started)
@@ -278,6 +276,11 @@ def _scalars(samples: Samples) -> Samples:
     return Samples(samples.wi, *(scalar_or_array(a) for a in samples[1:]))
 
 
+def _target(target: Union[str, int]) -> Tuple[str, int]:
+    """Its name, and the number of a channel."""
+    return (target, 0) if isinstance(target, str) else ("channel", as_count(target, "target"))
+
+
 def _is_one_shot(mode: str) -> bool:
     if mode not in MODES:
         raise Error(f"{mode!r} is no mode", "mode", "say 'exact' or 'one-shot'")
@@ -311,6 +314,8 @@ def load_sampler(path: Union[str, "os.PathLike[str]"], brdf: Optional[BrdfLike] 
     """
     path = os.fspath(path)
     text = _core.sampler_file_material(path)
+    if _core.names_family(path):
+        raise Error("it holds the sampler of a family", path, "read it by rt.load_family(path)")
     if brdf is not None:
         f = as_brdf(brdf)
     elif text == _core.unnamed:

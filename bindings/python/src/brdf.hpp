@@ -56,5 +56,6 @@ void in_pieces(std::size_t n, std::size_t piece, const Work& work) {
 
 void bind_brdf(nb::module_& m);
 void bind_sampler(nb::module_& m);
+void bind_family(nb::module_& m);
 
 }  // namespace reflectree::python

@@ -13,6 +13,7 @@ NB_MODULE(_core, m) {
   m.attr("version") = REFLECTREE_VERSION;
   python::bind_brdf(m);
   python::bind_sampler(m);
+  python::bind_family(m);
   m.attr("has_judges") = REFLECTREE_PYTHON_JUDGES != 0;
 #if REFLECTREE_PYTHON_JUDGES
   python::bind_verify(m);

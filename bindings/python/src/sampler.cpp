@@ -10,6 +10,7 @@
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/simd/sample_rounds.hpp"
+#include "sample_output.hpp"
 #include "sampler.hpp"
 
 namespace reflectree::python {
@@ -31,56 +32,54 @@ void densities_into(const PySampler& s, bool one_shot, std::span<const Direction
 
 namespace {
 
+TargetKind target_kind(const std::string& name) {
+  if (name == "norm") return TargetKind::norm;
+  if (name == "luminance") return TargetKind::luminance;
+  if (name == "maximum") return TargetKind::maximum;
+  if (name == "channel") return TargetKind::channel;
+  throw Error("no target is called '" + name + "'", "target",
+              "say norm, luminance, maximum or a channel's number");
+}
+
+}  // namespace
+
+BuildOptions build_options(const std::string& target, int channel, float expected_trials,
+                           float one_shot_variance, float albedo_error, std::uint64_t seed,
+                           std::uint64_t max_evaluations) {
+  BuildOptions options;
+  options.target.kind = target_kind(target);
+  options.target.index = std::uint16_t(channel);
+  options.expected_trials = expected_trials;
+  options.one_shot_variance = one_shot_variance;
+  options.albedo_error = albedo_error;
+  options.seed = seed;
+  options.max_evaluations = max_evaluations;
+  return options;
+}
+
+nb::dict report_of(const BuildReport& r) {
+  nb::dict report;
+  report["expected_trials"] = r.expected_trials;
+  report["overshoot_mass"] = r.overshoot_mass;
+  report["one_shot_variance"] = r.one_shot_variance;
+  report["asymmetry"] = r.asymmetry;
+  report["evaluations"] = r.evaluations;
+  report["notes"] = r.notes;
+  return report;
+}
+
+namespace {
+
 FunctionOwner& owner_of(PySampler& s) { return s.brdf.owner; }
 
 std::size_t width_of(const PyBrdf& brdf) {
   return brdf.function && !brdf.function->has_channel_axis() ? 0 : std::size_t(brdf.f.channels());
 }
 
-// The arrays of many samples, and the buffers through which they are written.
-class SampleOutput {
- public:
-  SampleOutput(const PyBrdf& brdf, const Output& wi, const Output& pdf, const Output& weight,
-               const Output& valid)
-      : channels_(std::size_t(brdf.f.channels())),
-        wi_(wi, 3, "out.wi"),
-        pdf_(pdf, 0, "out.pdf"),
-        weight_(weight, width_of(brdf), "out.weight"),
-        valid_(valid, 0, "out.valid") {
-    for (const Rows* rows : {&pdf_, &weight_, &valid_}) {
-      if (rows->size() != wi_.size())
-        throw Error("it has " + std::to_string(rows->size()) + " places where out.wi has " +
-                        std::to_string(wi_.size()),
-                    rows->name(), "give all four the same leading shape");
-    }
-  }
-  std::size_t size() const { return wi_.size(); }
-  SampleRows buffers(std::size_t count) {
-    wi_buffer_.resize(count), pdf_buffer_.resize(count), valid_buffer_.resize(count);
-    weight_buffer_.resize(count * channels_);
-    return {wi_buffer_, pdf_buffer_, weight_buffer_, valid_buffer_};
-  }
-  void write(std::size_t first) {
-    const auto* numbers = reinterpret_cast<const float*>(wi_buffer_.data());
-    static_assert(sizeof(Direction) == 3 * sizeof(float));
-    wi_.write(first, std::span<const float>(numbers, 3 * wi_buffer_.size()));
-    pdf_.write(first, std::span<const float>(pdf_buffer_));
-    weight_.write(first, std::span<const float>(weight_buffer_));
-    valid_.write(first, std::span<const std::uint8_t>(valid_buffer_));
-  }
-
- private:
-  std::size_t channels_;
-  Rows wi_, pdf_, weight_, valid_;
-  std::vector<Direction> wi_buffer_;
-  std::vector<float> pdf_buffer_, weight_buffer_;
-  std::vector<std::uint8_t> valid_buffer_;
-};
-
 void sample_into(const PySampler& s, bool one_shot, const Input& wo, const std::optional<Input>& u,
                  std::uint64_t seed, std::uint64_t stream, const Output& wi, const Output& pdf,
                  const Output& weight, const Output& valid) {
-  SampleOutput out(s.brdf, wi, pdf, weight, valid);
+  SampleOutput out(s.brdf.f.channels(), width_of(s.brdf), wi, pdf, weight, valid);
   const Rows wo_rows(wo, 3, "wo");
   std::optional<Rows> points;
   if (u) points.emplace(*u, 2, "u");
@@ -107,7 +106,7 @@ void sample_into(const PySampler& s, bool one_shot, const Input& wo, const std::
 void sample_n_into(const PySampler& s, bool one_shot, const Input& wo, std::uint64_t seed,
                    std::uint64_t stream, const Output& wi, const Output& pdf, const Output& weight,
                    const Output& valid) {
-  SampleOutput out(s.brdf, wi, pdf, weight, valid);
+  SampleOutput out(s.brdf.f.channels(), width_of(s.brdf), wi, pdf, weight, valid);
   const Rows wo_rows(wo, 3, "wo");
   if (out.size() == 0) return;
   const std::size_t n = out.size() / wo_rows.size();
@@ -177,44 +176,17 @@ void invert_into(const PySampler& s, const Input& wo, const Input& wi, const Out
   });
 }
 
-TargetKind target_kind(const std::string& name) {
-  if (name == "norm") return TargetKind::norm;
-  if (name == "luminance") return TargetKind::luminance;
-  if (name == "maximum") return TargetKind::maximum;
-  if (name == "channel") return TargetKind::channel;
-  throw Error("no target is called '" + name + "'", "target",
-              "say norm, luminance, maximum or a channel's number");
-}
-
 PySampler build_sampler(const PyBrdf& brdf, const std::string& target, int channel, float expected_trials,
                         float one_shot_variance, float albedo_error, std::uint64_t seed,
                         std::uint64_t max_evaluations, unsigned threads, nb::object progress) {
-  BuildOptions options;
-  options.target.kind = target_kind(target);
-  options.target.index = std::uint16_t(channel);
-  options.expected_trials = expected_trials;
-  options.one_shot_variance = one_shot_variance;
-  options.albedo_error = albedo_error;
-  options.seed = seed;
-  options.max_evaluations = max_evaluations;
+  const BuildOptions options =
+      build_options(target, channel, expected_trials, one_shot_variance, albedo_error, seed, max_evaluations);
   const Host host = make_host(threads, std::move(progress));
   const auto built = [&] {
     const nb::gil_scoped_release no_gil;
     return build(brdf.f, options, host);
   };
   return {brdf, built()};
-}
-
-nb::dict report_of(const PySampler& s) {
-  const BuildReport& r = s.data.report;
-  nb::dict report;
-  report["expected_trials"] = r.expected_trials;
-  report["overshoot_mass"] = r.overshoot_mass;
-  report["one_shot_variance"] = r.one_shot_variance;
-  report["asymmetry"] = r.asymmetry;
-  report["evaluations"] = r.evaluations;
-  report["notes"] = r.notes;
-  return report;
 }
 
 // The leaves of the tree that serves wo: (x, y, width, length, share of the mass) in square coordinates.
@@ -290,7 +262,8 @@ void bind_sampler(nb::module_& m) {
       .def("tables", &tables_of, nb::arg("one_shot"))
       .def("draw_one", &draw_one, nb::arg("wo"), nb::arg("u1"), nb::arg("u2"))
       .def("density_one", &density_one, nb::arg("wo"), nb::arg("wi"))
-      .def_prop_ro("report", &report_of)
+      .def_prop_ro("report", [](const PySampler& s) { return report_of(s.data.report); })
+      .def_prop_ro("brdf", [](const PySampler& s) { return s.brdf; })
       .def_prop_ro("material", [](const PySampler& s) { return s.data.material; })
       .def_prop_ro("domain", [](const PySampler& s) { return std::string(name_of(s.data.domain.kind)); })
       .def_prop_ro("half_square", [](const PySampler& s) { return s.data.domain.half(); })

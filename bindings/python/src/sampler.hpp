@@ -18,6 +18,12 @@ struct PySampler {
   Sampler<AnyBrdf> sampler;
 };
 
+// What a build is asked for: reflectree::BuildOptions in Python's words. Throws Error.
+BuildOptions build_options(const std::string& target, int channel, float expected_trials,
+                           float one_shot_variance, float albedo_error, std::uint64_t seed,
+                           std::uint64_t max_evaluations);
+nb::dict report_of(const BuildReport& report);
+
 // Densities of a mode per solid angle at pairs, from the values of f there, which one-shot mode does not read.
 void densities_into(const PySampler& s, bool one_shot, std::span<const Direction> wo,
                     std::span<const Direction> wi, std::span<const float> values, std::span<float> out);

@@ -46,6 +46,8 @@ bool names_family(const std::string& text, const FilePlaces& places);
 // Builds or loads it. Throws Error, Cancelled.
 OpenedFamily open_family(const std::string& text, const FilePlaces& places = {},
                          const BuildOptions& options = {}, const Host& host = {});
+// Of canonical data of a family. Throws Error.
+OpenedFamily open_family(SamplerData data, const FilePlaces& places);
 // Its member as a sampler like any other (member.hpp). Throws Error outside of the ranges.
 OpenedSampler open_member(const OpenedFamily& family, const Parameters& at);
 // "alpha=0.3" or "alpha_x=0.1,alpha_y=0.3": a number for each parameter, in any order. Throws Error.
