@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "albedo_azimuth.hpp"
 #include "albedo_integrals.hpp"
@@ -66,10 +67,21 @@ class TableBuilder {
       const AlbedoTable now = table();
       std::vector<float> cosines;
       std::vector<Panel> checked;
+      std::set<double> bent_until;
+      for (const Panel& panel : fresh)
+        if (panel.bend > 2) bent_until.insert(panel.hi);
       for (const Panel& panel : fresh) {
         if (panel.jump || panel.hi - panel.lo < 1e-5) continue;
         for (int k = 0; k < (round > 0 || panel.hi > 1.48 ? 3 : 1); ++k) {
           cosines.push_back(cosine_of(linear_mix(to_unit_double(u()), panel.lo, panel.hi)));
+          checked.push_back(panel);
+        }
+        // Where nodes bend more than what lies between them allows, one of them may be wrong: a border
+        // bends both panels.
+        if (round > 0) continue;
+        const bool border = panel.bend > 2 && bent_until.contains(panel.lo);
+        for (int i = border ? 0 : 1; i < (panel.bend > 4 ? 4 : 1); ++i) {
+          cosines.push_back(cosine_of(node_of(panel, i)));
           checked.push_back(panel);
         }
       }
@@ -78,14 +90,14 @@ class TableBuilder {
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
-        if (misses[i] > accepted * error_) doubtful.push_back(cosines[i]);
+        if (misses[i] > doubted * error_) doubtful.push_back(cosines[i]);
       }
       const std::vector<double> decided =
           misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress});
       double worst = 0;
       std::vector<Panel> missed;
       for (std::size_t i = 0, d = 0; i < cosines.size(); ++i) {
-        const double miss = misses[i] > accepted * error_ ? decided[d++] : misses[i];
+        const double miss = misses[i] > doubted * error_ ? decided[d++] : misses[i];
         worst = max(worst, miss);
         const Panel& p = checked[i];
         if (miss > accepted * error_ && p.level < deepest && (missed.empty() || missed.back().lo != p.lo))
@@ -112,6 +124,7 @@ class TableBuilder {
         }
       }
       rim_ = true;
+      cells_x_ = 24, cells_y_ = 12;  // what was deceived once would be so again
       for (const Panel& p : missed) {
         for (int i = 0; i < 5; ++i) nodes_.erase(node_of(p, i));
       }
@@ -141,7 +154,9 @@ class TableBuilder {
 
  private:
   static constexpr int deepest = 10;
-  static constexpr double accepted = 0.7;  // of the error, between table and check
+  // Of the error, between table and check. The check may be off by half of the error, the one that decides by a
+  // tenth: what is accepted is within the error with them.
+  static constexpr double doubted = 0.5, accepted = 0.7;
   static constexpr float progress = 0.1f, progress_end = 0.4f;
 
   double cubature_error() const { return 0.25 * error_; }
@@ -193,6 +208,7 @@ class TableBuilder {
           halve(panel, next);
         } else {
           closed_.push_back(panel);
+          closed_.back().bend = allowed > 0 && !panel.jump ? miss / allowed : 0;
         }
       }
       open_ = std::move(next);

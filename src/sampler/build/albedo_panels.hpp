@@ -24,6 +24,7 @@ struct Panel {
   // At the odd nodes, by the panel that was halved.
   std::array<double, 2> predicted{std::numeric_limits<double>::infinity(),
                                   std::numeric_limits<double>::infinity()};
+  double bend = 0;  // how far its nodes are from a parabola, in units of what is allowed
 };
 double node_of(const Panel& panel, int i);
 float cosine_of(double theta);
