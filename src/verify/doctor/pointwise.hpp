@@ -2,7 +2,7 @@
 // Draw by draw, without statistics: sample's pdf is pdf(wo, wi), and weight * pdf is f cos_theta_i.
 #pragma once
 
-#include "doctor_density.hpp"
+#include "density.hpp"
 
 namespace reflectree::detail {
 

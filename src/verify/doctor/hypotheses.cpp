@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "doctor_hypotheses.hpp"
+#include "hypotheses.hpp"
 
 #include <cstdio>
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "doctor_examined.hpp"
+#include "functions.hpp"
 
 namespace reflectree::detail {
 

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "doctor_density.hpp"
-#include "doctor_light.hpp"
-#include "doctor_pointwise.hpp"
-#include "doctor_structure.hpp"
-#include "doctor_values.hpp"
+#include "density.hpp"
+#include "findings.hpp"
+#include "kinds.hpp"
+#include "light.hpp"
+#include "physics.hpp"
+#include "pointwise.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/verify/significance.hpp"
+#include "structure.hpp"
+#include "values.hpp"
 
 namespace reflectree {
 namespace {

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "doctor_structure.hpp"
+#include "structure.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 
-#include "doctor_values.hpp"
+#include "findings.hpp"
 #include "reflectree/math/frame.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree::detail {
 namespace {
-
-std::string text(const char* format, double a, double b = 0) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
 
 struct Repeats {
   double most = 0, any = 0;  // shares: of the commonest direction; of those seen before

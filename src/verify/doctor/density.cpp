@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "doctor_density.hpp"
+#include "density.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <numeric>
 
-#include "doctor_explanations.hpp"
-#include "doctor_values.hpp"
+#include "explanations.hpp"
+#include "findings.hpp"
 #include "reflectree/verify/significance.hpp"
 
 namespace reflectree::detail {

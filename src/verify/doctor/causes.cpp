@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include "doctor_hypotheses.hpp"
+#include "hypotheses.hpp"
 #include "reflectree/verify/diagnosis.hpp"
 
 namespace reflectree {

@@ -3,7 +3,7 @@
 // parameter that is fitted. An explanation must fit at every viewer.
 #pragma once
 
-#include "doctor_density.hpp"
+#include "density.hpp"
 
 namespace reflectree::detail {
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "doctor_examined.hpp"
+#include "examined.hpp"
 
 namespace reflectree::detail {
 

@@ -2,7 +2,7 @@
 // The white furnace: what the weights add up to, in all and by regions, beside f cos_theta_i by cubature.
 #pragma once
 
-#include "doctor_examined.hpp"
+#include "examined.hpp"
 
 namespace reflectree::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "doctor_examined.hpp"
+#include "examined.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,16 +7,13 @@
 #include <numeric>
 
 #include "elevations.hpp"
+#include "parallel.hpp"
 #include "reflectree/math/sum.hpp"
 #include "reflectree/verify/bin_masses.hpp"
 #include "reflectree/verify/chi_square.hpp"
 
 namespace reflectree::detail {
 namespace {
-
-constexpr std::size_t batch = 1 << 16;  // rows of one call
-
-Direction narrow(Vec3<double> w) { return {float(w.x), float(w.y), float(w.z)}; }
 
 // At least six a side; a bin in a dim place is large and has more.
 Nodes nodes_of(const Bins& bins) {
@@ -177,92 +174,6 @@ void draw_all(const Functions& f, const DoctorOptions& options, std::uint64_t se
 
 }  // namespace
 
-std::vector<double> Functions::raw(std::span<const Direction> wo, std::span<const Direction> wi) const {
-  std::vector<double> out(wi.size() * channels());
-  for (std::size_t i = 0; i < wi.size(); i += batch) {
-    const std::size_t n = std::min(batch, wi.size() - i);
-    p_.eval(wo.subspan(i, n), wi.subspan(i, n), std::span(out).subspan(i * channels(), n * channels()));
-  }
-  return out;
-}
-
-std::vector<double> Functions::pdf(std::span<const Direction> wo, std::span<const Direction> wi) const {
-  std::vector<double> out(wi.size());
-  for (std::size_t i = 0; i < wi.size(); i += batch) {
-    const std::size_t n = std::min(batch, wi.size() - i);
-    p_.pdf(wo.subspan(i, n), wi.subspan(i, n), std::span(out).subspan(i, n));
-  }
-  return out;
-}
-
-std::vector<double> Functions::f_cos(std::span<const Direction> wo, std::span<const Direction> wi) const {
-  std::vector<double> out = raw(wo, wi);
-  if (eval_kind_ == EvalKind::f_cos) return out;
-  for (std::size_t i = 0; i < wi.size(); ++i) {
-    for (std::size_t c = 0; c < channels(); ++c) out[i * channels() + c] *= std::max(double(wi[i].z), 0.);
-  }
-  return out;
-}
-
-Functions::Draws Functions::draw(std::span<const Direction> wo, std::uint64_t seed) const {
-  Draws draws{std::vector<PatientDraw>(wo.size()), std::vector<double>(wo.size() * channels())};
-  for (std::size_t i = 0; i < wo.size(); i += batch) {
-    const std::size_t n = std::min(batch, wo.size() - i);
-    p_.sample(wo.subspan(i, n), i == 0 ? seed : mixed_seed(seed, i), std::span(draws.draw).subspan(i, n),
-              std::span(draws.value).subspan(i * channels(), n * channels()));
-  }
-  return draws;
-}
-
-double Functions::weight(const PatientDraw& d, double value, double f_cos) const {
-  if (!d.drawn) return 0;
-  if (value_kind_ == ValueKind::weight) return value;
-  const double numerator = value_kind_ == ValueKind::f_cos ? value
-                           : value_kind_ == ValueKind::f   ? value * double(d.wi.z)
-                                                           : f_cos;
-  return d.pdf > 0 ? numerator / d.pdf : 0;
-}
-
-double Functions::target(std::span<const double> channels) const {
-  double squares = 0;
-  for (const double x : channels) squares += sqr(sane_or_zero(x));
-  return std::sqrt(squares);
-}
-
-TargetFunction Functions::target_function() const {
-  TargetFunction t;
-  t.concurrent = p_.concurrent;
-  t.eval = [f = *this](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> out) {
-    Directions w;
-    for (const auto& x : wi) w.push_back(narrow(x));
-    const std::vector<double> values = f.raw(Directions(wi.size(), narrow(wo)), w);
-    for (std::size_t i = 0; i < wi.size(); ++i) {
-      const double value = f.target(std::span(values).subspan(i * f.channels(), f.channels()));
-      const bool with_cosine = f.eval_kind_ == EvalKind::f_cos;
-      out[i] = !(w[i].z > 0) ? 0 : with_cosine ? value / wi[i].z : value;
-    }
-  };
-  return t;
-}
-
-TargetFunction Functions::density_function() const {
-  TargetFunction t;
-  t.concurrent = p_.concurrent;
-  t.eval = [f = *this](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> out) {
-    Directions w;
-    for (const auto& x : wi) w.push_back(narrow(x));
-    const std::vector<double> pdf = f.pdf(Directions(wi.size(), narrow(wo)), w);
-    for (std::size_t i = 0; i < wi.size(); ++i) out[i] = w[i].z > 0 ? sane_or_zero(pdf[i]) / wi[i].z : 0;
-  };
-  return t;
-}
-
-bool is_lost(const PatientDraw& d, std::span<const double> values, bool has_pdf) {
-  if (!d.drawn) return true;
-  const bool dark = std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
-  return dark && ((has_pdf && !(d.pdf > 0)) || !(d.wi.z > 0));
-}
-
 std::vector<ExaminedView> examine_views(const Functions& f, const DoctorOptions& options, const Host& host) {
   Pcg32 u = part_generator(options.seed, 21);
   std::vector<ExaminedView> views;
@@ -284,25 +195,6 @@ std::vector<ExaminedView> examine_views(const Functions& f, const DoctorOptions&
     host.progress(float(i + 1) / float(views.size() + 2));
   }
   return views;
-}
-
-Pointwise draw_pointwise(const Functions& f, int viewers, int draws, std::uint64_t seed) {
-  Pcg32 u = part_generator(seed, 23);
-  Directions wo;
-  for (const Direction w : stratified_viewers(std::size_t(viewers), u))
-    wo.insert(wo.end(), std::size_t(draws), w);
-  const Functions::Draws all = f.draw(wo, mixed_seed(seed, 24));
-  Pointwise p;
-  for (std::size_t i = 0; i < wo.size(); ++i) {
-    const auto values = std::span(all.value).subspan(i * f.channels(), f.channels());
-    if (is_lost(all.draw[i], values, f.has_pdf()) || !is_finite(all.draw[i].wi) || !(all.draw[i].wi.z > 0))
-      continue;
-    p.wo.push_back(wo[i]);
-    p.wi.push_back(all.draw[i].wi);
-    p.pdf.push_back(all.draw[i].pdf);
-    p.value.insert(p.value.end(), values.begin(), values.end());
-  }
-  return p;
 }
 
 Fit fit_of(const DoctorView& view, std::span<const double> mass, bool shape_alone) {
@@ -333,13 +225,5 @@ double integral_tolerance(const ExaminedView& view, double z) {
   return 1e-3 + std::min(0.3 * view.pdf_error, 4e-3) +
          z * std::sqrt(std::max(lost * (1 - lost), 0.) / view.draws);
 }
-
-std::string in_words(Direction w) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", double(w.x), double(w.y), double(w.z));
-  return buffer;
-}
-
-double degrees(double radians) { return radians * 180 / pi_v<double>; }
 
 }  // namespace reflectree::detail

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "doctor_light.hpp"
+#include "light.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
 
-#include "doctor_values.hpp"
+#include "findings.hpp"
 
 namespace reflectree::detail {
 namespace {

@@ -3,7 +3,7 @@
 // lines or points, and know nothing of each other.
 #pragma once
 
-#include "doctor_examined.hpp"
+#include "examined.hpp"
 
 namespace reflectree::detail {
 
