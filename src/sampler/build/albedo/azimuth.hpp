@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "albedo_rows.hpp"
 #include "reflectree/sampler/known/viewer_frame.hpp"
+#include "rows.hpp"
 
 namespace reflectree::detail {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_rows.hpp"
+#include "rows.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "albedo_panels.hpp"
+#include "panels.hpp"
 
 namespace reflectree::detail {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_pieces.hpp"
+#include "pieces.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "albedo_panels.hpp"
+#include "panels.hpp"
 
 namespace reflectree::detail {
 

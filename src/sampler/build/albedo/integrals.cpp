@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_integrals.hpp"
+#include "integrals.hpp"
 
 #include <algorithm>
 #include <array>

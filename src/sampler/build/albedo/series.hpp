@@ -2,8 +2,8 @@
 // The albedo of a function that is smooth all around: few rows at equidistant azimuths foretell all others.
 #pragma once
 
-#include "albedo_rows.hpp"
 #include "reflectree/sampler/known/viewer_frame.hpp"
+#include "rows.hpp"
 
 namespace reflectree::detail {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_series.hpp"
+#include "series.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "albedo_panels.hpp"
+#include "panels.hpp"
 
 namespace reflectree::detail {
 

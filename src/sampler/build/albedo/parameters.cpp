@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_parameters.hpp"
+#include "parameters.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_witnesses.hpp"
+#include "witnesses.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "albedo_panels.hpp"
+#include "panels.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/math/random.hpp"
 

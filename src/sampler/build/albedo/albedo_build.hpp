@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "field.hpp"
+#include "build/field.hpp"
 
 namespace reflectree::detail {
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "albedo_rows.hpp"
+#include "rows.hpp"
 
 namespace reflectree::detail {
 

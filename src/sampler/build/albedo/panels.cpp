@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_panels.hpp"
+#include "panels.hpp"
 
 #include <cmath>
 

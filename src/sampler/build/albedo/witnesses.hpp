@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "albedo_integrals.hpp"
+#include "integrals.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 
 namespace reflectree::detail {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "albedo_azimuth.hpp"
+#include "azimuth.hpp"
 
 #include <algorithm>
 #include <map>
 
-#include "albedo_pieces.hpp"
-#include "albedo_series.hpp"
+#include "pieces.hpp"
+#include "series.hpp"
 
 namespace reflectree::detail {
 

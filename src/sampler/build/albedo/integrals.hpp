@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "field.hpp"
+#include "build/field.hpp"
 
 namespace reflectree::detail {
 
