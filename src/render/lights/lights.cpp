@@ -195,13 +195,18 @@ void Lights::sample_light(const Light& light, Point at, PathBits& u, std::option
       s = sample_sphere(scene_.spheres[light.index], at, share_, light.radiance, u);
       look_up({Hit::Kind::sphere, light.index, s ? s->distance : 0, 0, 0}, at, s);
       break;
-    case Light::Kind::rectangle:
+    case Light::Kind::rectangle: {
+      const Flat& r = scene_.rectangles[light.index];
+      const auto [x, y] = in_rectangle(u);
+      s = sample_area(at, point_on(r, x, y), r.normal, light.density, light.radiance);
+      look_up({Hit::Kind::rectangle, light.index, 0, x, y}, at, s);
+      break;
+    }
     case Light::Kind::disk: {
-      const bool disk = light.kind == Light::Kind::disk;
-      const Flat& flat = (disk ? scene_.disks : scene_.rectangles)[light.index];
-      const auto [x, y] = disk ? in_disk(u) : in_rectangle(u);
-      s = sample_area(at, point_on(flat, x, y), flat.normal, light.density, light.radiance);
-      look_up({disk ? Hit::Kind::disk : Hit::Kind::rectangle, light.index, 0, x, y}, at, s);
+      const Flat& d = scene_.disks[light.index];
+      const auto [x, y] = in_disk(u);
+      s = sample_area(at, point_on(d, x, y), d.normal, light.density, light.radiance);
+      look_up({Hit::Kind::disk, light.index, 0, x, y}, at, s);
       break;
     }
     case Light::Kind::cylinder: {
