@@ -92,7 +92,7 @@ RFL_FN int rfl_view(const rfl_sampler* s, rfl_vec wo, rfl_viewer* v) {
 RFL_FN const uint32_t* rfl_slab_at(const rfl_lookup* l, const rfl_viewer* v) {
   return l->table + RFL_SLAB * (size_t)rfl_find(l, v->wo.z);
 }
-/* ---- The domain: from the square to wi, with d(projected solid angle) / d(share); domain_map.hpp derives it ---- */
+/* ---- The domain: from the square to wi, with d(projected solid angle) / d(share); domain_map.hpp and the maps that it includes derive it ---- */
 RFL_FN void rfl_star(float sin_o, float cos_o, float cos_phi, float* p, float* c) {
   const float c2 = cos_o * cos_o, sx = sin_o * cos_phi, l = sqrtf(c2 + sx * sx) + fabsf(sx);
   *p = rfl_by_sign(sx, l * l, c2), *c = cos_o * l;

@@ -145,13 +145,13 @@ def chi2_table(title, materials):
 
 def faults():
     """The same test with three faults planted into the plug-in."""
-    from reflectree import _drjit
+    from reflectree import _drjit_forest as forest
 
     print("\n### Planted faults, principled 0.6 at 60°\n")
     row("fault", "verdict", "p or sum")
     row("---", "---", "---:")
     description = ours(MATERIALS["principled 0.6"])
-    linear, choose, leave = _drjit._linear, _drjit.Forest.choose, _drjit.View.leave
+    linear, choose, leave = forest._linear, forest.Forest.choose, forest.View.leave
     planted = {
         "none": (linear, choose, leave),
         "slopes of leaves are ignored when drawing": (lambda dr, slope, u: u, choose, leave),
@@ -162,12 +162,12 @@ def faults():
     right = True
     try:
         for name, (a, b, c) in planted.items():
-            _drjit._linear, _drjit.Forest.choose, _drjit.View.leave = a, b, c
+            forest._linear, forest.Forest.choose, forest.View.leave = a, b, c
             accepted, text = judged(description, 60, 1)
             right &= accepted == (name == "none")
             row(name, "accepted" if accepted else "rejected", text)
     finally:
-        _drjit._linear, _drjit.Forest.choose, _drjit.View.leave = linear, choose, leave
+        forest._linear, forest.Forest.choose, forest.View.leave = linear, choose, leave
     return right
 
 

@@ -5,6 +5,7 @@
 
 #include <locale>
 
+#include "../error_words.hpp"
 #include "random_models.hpp"
 #include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/error.hpp"
@@ -16,12 +17,7 @@ namespace {
 std::string canonical(std::string_view text) { return to_text(parse_material(text)); }
 
 std::string error_of(std::string_view text) {
-  try {
-    parse_material(text);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
+  return error_words([&] { parse_material(text); });
 }
 
 TEST(Material, PrintsItsCanonicalForm) {
@@ -276,23 +272,6 @@ TEST(Material, MakesSumsAndLoadsFiles) {
   EXPECT_THROW(make_brdf({{{1, "no_model", {}, "", ""}}}), Error);
 }
 
-TEST(NumberText, IsShortestAndReadsBack) {
-  EXPECT_EQ(shortest_text(0.1f), "0.1");
-  EXPECT_EQ(shortest_text(50), "50");
-  EXPECT_EQ(shortest_text(123456), "123456");
-  EXPECT_EQ(shortest_text(1e6f), "1e+06");
-  EXPECT_EQ(shortest_text(1.f / 3), "0.33333334");
-  Pcg32 bits(3);
-  for (int i = 0; i < 20'000; ++i) {
-    const float x = float(std::pow(10.0, -44 + 82 * uniform(bits)));
-    std::string_view text;
-    const std::string stored = shortest_text(x);
-    text = stored;
-    EXPECT_EQ(take_number(text), x);
-    EXPECT_TRUE(text.empty());
-  }
-}
-
 TEST(NumberText, DoesNotAskTheLocale) {
   struct Comma : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
@@ -303,23 +282,6 @@ TEST(NumberText, DoesNotAskTheLocale) {
   const std::string text = canonical("0.5*phong:n=1234.5");
   std::locale::global(before);
   EXPECT_EQ(text, "0.5*phong:kd=0.2,ks=0.6,n=1234.5");
-}
-
-TEST(NumberText, TakesWhatIsANumberAndNoMore) {
-  std::string_view text = "1e+x";
-  EXPECT_EQ(take_number(text), 1.f);
-  EXPECT_EQ(text, "e+x");
-  for (std::string_view none : {"", ".", "+", "-.", "e5", "nan", "inf", "x1"}) {
-    std::string_view rest = none;
-    EXPECT_EQ(take_number(rest), std::nullopt);
-    EXPECT_EQ(rest, none);
-  }
-  text = "1e999999999999";
-  EXPECT_EQ(take_number(text), std::numeric_limits<float>::infinity());
-  text = "-1e99";
-  EXPECT_EQ(take_number(text), -std::numeric_limits<float>::infinity());
-  text = "1e-99999";
-  EXPECT_EQ(take_number(text), 0.f);
 }
 
 }  // namespace

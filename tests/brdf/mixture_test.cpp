@@ -47,22 +47,14 @@ TEST(Mixture, IsTheSumOfItsTermsInEveryForm) {
   const BrdfSum<Lambert, Ggx> sum{0.25f, a, 0.5f, b};
   const AnyBrdf any = mixture({{0.25f, a}, {0.5f, b}});
   const std::vector<Pair> pairs = many_pairs();
-  std::vector<Direction> wo, wi;
-  std::vector<ShadingGeometry<float>> geometry;
-  for (const Pair& p : pairs) {
-    wo.push_back(p.wo);
-    wi.push_back(p.wi);
-    geometry.push_back(shading_geometry(p.wo, p.wi));
-  }
-  std::vector<Rgb> of_directions(pairs.size()), of_geometry(pairs.size());
-  any.eval(wo, wi, {&of_directions[0].r, 3 * pairs.size()});
-  any.eval(geometry, {&of_geometry[0].r, 3 * pairs.size()});
+  const Evaluated e = evaluated(any, pairs);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Rgb expected = 0.25f * eval(a, wo[i], wi[i]) + 0.5f * eval(b, wo[i], wi[i]);
-    EXPECT_EQ(of_directions[i], expected);
-    EXPECT_EQ(of_geometry[i], expected);
-    EXPECT_EQ(to_rgb(any(geometry[i])), expected);
-    EXPECT_EQ(eval(sum, wo[i], wi[i]), expected);
+    const auto [wo, wi] = pairs[i];
+    const Rgb expected = 0.25f * eval(a, wo, wi) + 0.5f * eval(b, wo, wi);
+    EXPECT_EQ(e.of_directions[i], expected);
+    EXPECT_EQ(e.of_geometry[i], expected);
+    EXPECT_EQ(to_rgb(any(e.geometry[i])), expected);
+    EXPECT_EQ(eval(sum, wo, wi), expected);
   }
 }
 

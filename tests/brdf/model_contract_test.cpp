@@ -153,21 +153,13 @@ TYPED_TEST(ModelContract, IsTheSameErasedAndInBatches) {
   const auto model = random_model<TypeParam>(bits);
   const AnyBrdf any = model;
   ASSERT_EQ(any.channels(), 3);
-  std::vector<Direction> wo, wi;
-  std::vector<ShadingGeometry<float>> geometry;
-  for (const Pair& p : test_pairs(pair_count, bits)) {
-    wo.push_back(p.wo);
-    wi.push_back(p.wi);
-    geometry.push_back(shading_geometry(p.wo, p.wi));
-  }
-  std::vector<Rgb> of_directions(wo.size()), of_geometry(wo.size());
-  any.eval(wo, wi, {&of_directions[0].r, 3 * wo.size()});
-  any.eval(geometry, {&of_geometry[0].r, 3 * wo.size()});
-  for (std::size_t i = 0; i < wo.size(); ++i) {
-    const Rgb expected = eval(model, wo[i], wi[i]);
-    EXPECT_EQ(of_directions[i], expected);
-    EXPECT_EQ(of_geometry[i], expected);
-    EXPECT_EQ(to_rgb(any(geometry[i])), expected);
+  const std::vector<Pair> pairs = test_pairs(pair_count, bits);
+  const Evaluated e = evaluated(any, pairs);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Rgb expected = eval(model, pairs[i].wo, pairs[i].wi);
+    EXPECT_EQ(e.of_directions[i], expected);
+    EXPECT_EQ(e.of_geometry[i], expected);
+    EXPECT_EQ(to_rgb(any(e.geometry[i])), expected);
   }
 }
 

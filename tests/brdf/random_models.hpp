@@ -2,6 +2,7 @@
 // Models with random parameters, and random pairs of directions.
 #pragma once
 
+#include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/models/all.hpp"
 #include "reflectree/math/random.hpp"
 
@@ -62,6 +63,24 @@ inline std::vector<Pair> test_pairs(int count, Pcg32& bits) {
     for (const Direction b : {grazing, slanted, Direction{-1, 0, z}, up, tilted}) pairs.push_back({a, b});
   }
   return pairs;
+}
+
+// All pairs in one call, from directions and from their geometry.
+struct Evaluated {
+  std::vector<ShadingGeometry<float>> geometry;
+  std::vector<Rgb> of_directions, of_geometry;
+};
+inline Evaluated evaluated(const AnyBrdf& f, const std::vector<Pair>& pairs) {
+  Evaluated e;
+  std::vector<Direction> wo, wi;
+  for (const Pair& p : pairs) {
+    wo.push_back(p.wo), wi.push_back(p.wi);
+    e.geometry.push_back(shading_geometry(p.wo, p.wi));
+  }
+  e.of_directions.resize(pairs.size()), e.of_geometry.resize(pairs.size());
+  f.eval(wo, wi, {&e.of_directions[0].r, 3 * pairs.size()});
+  f.eval(e.geometry, {&e.of_geometry[0].r, 3 * pairs.size()});
+  return e;
 }
 
 }  // namespace reflectree

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
-#include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
@@ -28,16 +28,6 @@ const std::string window_xml =
     "<WindowElement xmlns=\"http://windows.lbl.gov\">\n<Optical/></WindowElement>\n";
 
 std::string kind_of(const std::string& text) { return std::string(recognise_file(as_bytes(text)).what); }
-
-template <class Read>
-std::string error_of(const Read& read) {
-  try {
-    read();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 TEST(FileKind, TellsWhatItIs) {
   EXPECT_EQ(kind_of(""), "empty");
@@ -86,23 +76,23 @@ TEST(FileKind, EveryReaderSaysIt) {
   const std::string metal = write("metal.binary", pointer), page = write("sky.hdr", "<html>404</html>"),
                     window = write("shade.xml", window_xml), nothing = write("nothing.rfl", "");
   const std::string pull = ": a Git LFS pointer; fetch the file with git lfs pull";
-  EXPECT_EQ(error_of([&] { load_brdf(metal); }), metal + pull);
-  EXPECT_EQ(error_of([&] { list_members(metal); }), metal + pull);
-  EXPECT_EQ(error_of([&] { load_sampler(metal); }), metal + pull);
-  EXPECT_EQ(error_of([&] { read_image(metal); }), metal + pull);
-  EXPECT_NE(error_of([&] { read_image(page); }).find("sky.hdr: an HTML page; fetch the file itself"),
+  EXPECT_EQ(error_words([&] { load_brdf(metal); }), metal + pull);
+  EXPECT_EQ(error_words([&] { list_members(metal); }), metal + pull);
+  EXPECT_EQ(error_words([&] { load_sampler(metal); }), metal + pull);
+  EXPECT_EQ(error_words([&] { read_image(metal); }), metal + pull);
+  EXPECT_NE(error_words([&] { read_image(page); }).find("sky.hdr: an HTML page; fetch the file itself"),
             std::string::npos);
-  EXPECT_EQ(error_of([&] { load_brdf(window); }),
+  EXPECT_EQ(error_words([&] { load_brdf(window); }),
             window + ": line 4: <Optical> without <Layer>; mend the line or fetch the file again");
   EXPECT_EQ(
-      error_of([&] { load_sampler(window); }),
+      error_words([&] { load_sampler(window); }),
       window + ": a measured material (WINDOW/Radiance BSDF XML); name a file that 'reflectree build' saved");
-  EXPECT_EQ(error_of([&] { load_sampler(nothing); }), nothing + ": empty; fetch the file again");
+  EXPECT_EQ(error_words([&] { load_sampler(nothing); }), nothing + ": empty; fetch the file again");
   for (const char* inside : {"", "."}) {
     const std::string path = folder / inside;
-    EXPECT_EQ(error_of([&] { load_brdf(path); }), path + ": is a directory; name a file inside it");
-    EXPECT_EQ(error_of([&] { load_sampler(path); }), path + ": is a directory; name a file inside it");
-    EXPECT_EQ(error_of([&] { read_image(path); }), path + ": is a directory; name a file inside it");
+    EXPECT_EQ(error_words([&] { load_brdf(path); }), path + ": is a directory; name a file inside it");
+    EXPECT_EQ(error_words([&] { load_sampler(path); }), path + ": is a directory; name a file inside it");
+    EXPECT_EQ(error_words([&] { read_image(path); }), path + ": is a directory; name a file inside it");
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/material_file.hpp"
@@ -14,12 +15,7 @@ namespace reflectree {
 namespace {
 
 std::string error_of(const std::string& path, std::uint64_t limit = 100) {
-  try {
-    read_file(path, limit);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
+  return error_words([&] { read_file(path, limit); });
 }
 
 TEST(File, RoundTripReplacesAndLeavesNothingBehind) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
 #include "reference_values.hpp"
 #include "reflectree/brdf/models/sgd.hpp"
-#include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/measured_facts.hpp"
@@ -155,12 +155,7 @@ TEST(Fits, EveryMeasuredMaterialIsFiniteAndNotNegative) {
 }
 
 std::string error_of(const std::string& text, const std::string& member = "") {
-  try {
-    read_brdf(synthetic::as_bytes(text), "t.csv", member);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
+  return error_words([&] { read_brdf(synthetic::as_bytes(text), "t.csv", member); });
 }
 
 TEST(ParameterTable, SaysWhatIsWrongAndWhere) {

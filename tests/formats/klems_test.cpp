@@ -3,6 +3,7 @@
 // errors with their lines, and an independent reading of synthetic and measured files.
 #include <gtest/gtest.h>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
 #include "reference_values.hpp"
 #include "reflectree/brdf/tables/klems_table.hpp"
@@ -147,12 +148,7 @@ TEST(Klems, FactsTellTheMatrix) {
 }
 
 std::string error_of(const std::string& text, const std::string& member = "") {
-  try {
-    read_brdf(as_bytes(text), "m.xml", member);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
+  return error_words([&] { read_brdf(as_bytes(text), "m.xml", member); });
 }
 
 // The file with one text replaced by another, once.

@@ -10,7 +10,7 @@
 
 namespace reflectree {
 
-// Runs PYTHON SCRIPT BEFORE... PAIRS OUT AFTER...: PAIRS holds wo.xyz wi.xyz of every pair as 32-bit floats,
+// Runs PYTHON -B SCRIPT BEFORE... PAIRS OUT AFTER...: PAIRS holds wo.xyz wi.xyz of every pair as 32-bit floats,
 // and the script writes 64-bit floats to OUT.
 inline std::vector<double> reference_values(const std::string& script, const std::vector<std::string>& before,
                                             const Pairs& pairs, const std::vector<std::string>& after = {},
@@ -25,7 +25,7 @@ inline std::vector<double> reference_values(const std::string& script, const std
   write_file_atomically(folder / "pairs", raw);
   std::string command;
   const auto add = [&command](const std::string& word) { command += " \"" + word + "\""; };
-  add(python), add(std::string(REFLECTREE_SOURCE) + "/" + script);
+  add(python), add("-B"), add(std::string(REFLECTREE_SOURCE) + "/" + script);
   for (const std::string& word : before) add(word);
   add(folder / "pairs"), add(folder / "out");
   for (const std::string& word : after) add(word);

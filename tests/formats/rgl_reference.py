@@ -5,29 +5,18 @@
 usage: rgl_reference.py FILE PAIRS OUT
 PAIRS: float32 wo.xyz wi.xyz, one pair after the other. OUT: float64 f cos_theta_i, r g b, not clipped.
 """
-import struct
 import sys
 
 import numpy as np
 
+from tensor_file import read_tensor_file
+
 DTYPES = {1: "u1", 2: "i1", 3: "u2", 4: "i2", 5: "u4", 6: "i4", 7: "u8", 8: "i8", 9: "f2", 10: "f4", 11: "f8"}
 
 
-def read_tensor_file(path):
-    data = open(path, "rb").read()
-    assert data[:12] == b"tensor_file\0"
-    (count,) = struct.unpack_from("<I", data, 14)
-    at, fields = 18, {}
-    for _ in range(count):
-        (length,) = struct.unpack_from("<H", data, at)
-        name = data[at + 2 : at + 2 + length].decode()
-        at += 2 + length
-        dims, dtype, offset = struct.unpack_from("<HBQ", data, at)
-        shape = struct.unpack_from("<%dQ" % dims, data, at + 11)
-        at += 11 + 8 * dims
-        size = int(np.prod(shape))
-        fields[name] = np.frombuffer(data, "<" + DTYPES[dtype], size, offset).reshape(shape)
-    return fields
+def arrays(path):
+    return {name: np.frombuffer(data, "<" + DTYPES[dtype]).reshape(shape)
+            for name, (shape, dtype, data) in read_tensor_file(path).items()}
 
 
 def cell(x, size):
@@ -103,7 +92,7 @@ def main():
     # The unit vectors that the floats stand for: where wo and wi nearly cancel, rounded lengths alone would
     # turn the half vector.
     directions /= np.linalg.norm(directions, axis=2, keepdims=True)
-    evaluate(read_tensor_file(path), directions[:, 0], directions[:, 1]).astype("<f8").tofile(out)
+    evaluate(arrays(path), directions[:, 0], directions[:, 1]).astype("<f8").tofile(out)
 
 
 if __name__ == "__main__":

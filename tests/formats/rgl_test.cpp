@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
 #include "reference_values.hpp"
 #include "reflectree/brdf/any_brdf.hpp"
@@ -332,12 +333,7 @@ TEST(Rgl, MeasuredFilesAgreeWithNumpyAndAnotherRenderer) {
 
 TEST(Rgl, NamesWhatItDoesNotSupport) {
   const auto error_of = [](std::vector<synthetic::Field> fields) -> std::string {
-    try {
-      read_rgl(synthetic::tensor_file(fields), "m.bsdf");
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
+    return error_words([&] { read_rgl(synthetic::tensor_file(fields), "m.bsdf"); });
   };
   auto fields = synthetic::rgl_fields({});
   fields[0] = synthetic::floats("phi_i", {3}, {0, 1, 2});

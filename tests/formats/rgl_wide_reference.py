@@ -13,24 +13,13 @@ import math
 import struct
 import sys
 
+from tensor_file import read_tensor_file
 
-def read_tensor_file(path):
-    with open(path, "rb") as file:
-        data = file.read()
-    assert data[:12] == b"tensor_file\0"
-    (count,) = struct.unpack_from("<I", data, 14)
-    at, fields = 18, {}
-    for _ in range(count):
-        (length,) = struct.unpack_from("<H", data, at)
-        name = data[at + 2:at + 2 + length].decode()
-        at += 2 + length
-        dims, dtype, offset = struct.unpack_from("<HBQ", data, at)
-        shape = struct.unpack_from(f"<{dims}Q", data, at + 11)
-        at += 11 + 8 * dims
-        size = math.prod(shape)
-        if dtype in (1, 10):
-            fields[name] = shape, struct.unpack_from(f"<{size}{'B' if dtype == 1 else 'f'}", data, offset)
-    return fields
+
+def bytes_and_floats(path):
+    """name -> (shape, numbers)"""
+    return {name: (shape, data if dtype == 1 else struct.unpack(f"<{len(data) // 4}f", data))
+            for name, (shape, dtype, data) in read_tensor_file(path).items() if dtype in (1, 10)}
 
 
 def between(nodes, x):
@@ -50,7 +39,7 @@ def cell(x, size):
 
 class Material:
     def __init__(self, path):
-        self.fields = read_tensor_file(path)
+        self.fields = bytes_and_floats(path)
         self.phi, self.theta = self.fields["phi_i"][1], self.fields["theta_i"][1]
         self.isotropic = len(self.phi) <= 2
         self.reduction = 1 if self.isotropic else round(2 * math.pi / (self.phi[-1] - self.phi[0]))

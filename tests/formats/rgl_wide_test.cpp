@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
 #include "reference_values.hpp"
 #include "reflectree/error.hpp"
@@ -204,12 +205,7 @@ TEST(RglWide, FactsTellTheKind) {
 
 TEST(RglWide, NamesWhatItDoesNotSupport) {
   const auto error_of = [](const std::vector<synthetic::Field>& fields) -> std::string {
-    try {
-      read_brdf(synthetic::tensor_file(fields), "m.bsdf");
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
+    return error_words([&] { read_brdf(synthetic::tensor_file(fields), "m.bsdf"); });
   };
   const auto with = [&](std::size_t index, const synthetic::Field& field) {
     auto fields = synthetic::rgl_wide_fields(recipe_of(3, 4));

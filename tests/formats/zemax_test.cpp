@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "../error_words.hpp"
 #include "measured_data.hpp"
 #include "reference_values.hpp"
 #include "reflectree/error.hpp"
@@ -217,12 +218,7 @@ TEST(Zemax, ThreeCurvesAreOneColourOrThreeFiles) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    read_brdf(as_bytes(text), "m.bsdf");
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
+  return error_words([&] { read_brdf(as_bytes(text), "m.bsdf"); });
 }
 
 std::string flat_text() {

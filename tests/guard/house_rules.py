@@ -8,7 +8,8 @@ Usage: house_rules.py ROOT. Prints one line per broken rule; exit code 1 if ther
 import os
 import pathlib
 import re
-import sys
+
+from report import report
 
 SPDX = "SPDX-License-Identifier: Apache-2.0"
 SOURCE = {".hpp", ".cpp", ".h", ".py", ".sh", ".cmake", ".in", ".js", ".css", ".ts", ".supp"}
@@ -47,11 +48,5 @@ def broken_rules(root: pathlib.Path) -> list[str]:
     return found
 
 
-def main() -> int:
-    found = broken_rules(pathlib.Path(sys.argv[1]))
-    print("\n".join(found) or "every rule holds")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    report(broken_rules, "every rule holds")

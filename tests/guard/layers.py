@@ -11,7 +11,8 @@ Usage: layers.py ROOT. Prints one line per broken arrow; exit code 1 if there is
 """
 import pathlib
 import re
-import sys
+
+from report import report
 
 CORE = ("ground", "text", "math", "brdf", "sampler", "formats")  # ground: headers directly in include/reflectree
 BELOW_SAMPLER = ("ground", "text", "math", "brdf")
@@ -90,10 +91,11 @@ def broken_arrows(root: pathlib.Path) -> list[str]:
                     found.append(f"{where}: {room} may not see {seen} ({name})")
             elif bracket == "<" and room in CORE and name not in STANDARD:
                 found.append(f"{where}: {room} depends on the standard library alone, not on <{name}>")
-            elif bracket == '"' and "/" in name and ".." not in name and (root / "src" / room / name).is_file():
+            elif bracket == '"' and ".." not in name and (root / "src" / room / name).is_file() and (
+                    "/" in name or not (file.parent / name).is_file()):
                 seen_small = room_of(f"{room}/{name}")[1]
             elif bracket == '"' and not (file.parent / name).is_file():
-                found.append(f'{where}: "{name}" is neither a public header nor beside this file')
+                found.append(f'{where}: "{name}" is neither a public header, nor beside this file, nor in its room')
             elif bracket == '"' and (file.parent / name).resolve().parent != file.parent.resolve():
                 found.append(f'{where}: "{name}" reaches into another folder; make it a public header')
             if seen == room and seen_small != small and seen_small not in SMALL_ROOMS[room][small]:
@@ -103,11 +105,5 @@ def broken_arrows(root: pathlib.Path) -> list[str]:
     return found
 
 
-def main() -> int:
-    found = broken_arrows(pathlib.Path(sys.argv[1]))
-    print("\n".join(found) or "every arrow holds")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    report(broken_arrows, "every arrow holds")

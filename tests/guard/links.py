@@ -16,9 +16,9 @@ import itertools
 import os
 import pathlib
 import re
-import sys
 
 from house_rules import files
+from report import report
 
 ROOTS = ("src", "include", "tests", "docs", "tools", "bench", "apps", "bindings", "runtime", "examples", "cmake", "scenes")
 BASES = ("", "include", "include/reflectree", "src")  # where a header may be named from
@@ -194,11 +194,5 @@ def dead_ends(root: pathlib.Path) -> list[str]:
     return found + lost_questions(root)
 
 
-def main() -> int:
-    found = dead_ends(pathlib.Path(sys.argv[1]))
-    print("\n".join(found) or "every link leads somewhere")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    report(dead_ends, "every link leads somewhere")

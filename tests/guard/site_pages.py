@@ -5,8 +5,9 @@ Usage: site_pages.py FOLDER. Prints one line per fault; exit code 1 if there is 
 """
 import html.parser
 import pathlib
-import sys
 import urllib.parse
+
+from report import report
 
 
 class Page(html.parser.HTMLParser):
@@ -46,11 +47,5 @@ def faults_of(root: pathlib.Path) -> list[str]:
     return faults
 
 
-def main() -> int:
-    faults = faults_of(pathlib.Path(sys.argv[1]))
-    print("\n".join(faults) or "every link of the site leads somewhere, and nothing comes from the network")
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    report(faults_of, "every link of the site leads somewhere, and nothing comes from the network")

@@ -68,6 +68,13 @@ class Planted(unittest.TestCase):
         self.plant("src/sampler/build/build.cpp", '#include "../../math/secret.hpp"\n')
         self.assert_caught(layers.broken_arrows, "reaches into another folder")
 
+    def test_private_header_of_the_room(self):
+        self.plant("src/verify/parallel.hpp", "")
+        self.plant("src/verify/doctor/light.cpp", '#include "parallel.hpp"\n')
+        self.assertEqual(layers.broken_arrows(self.root), [])
+        self.plant("src/verify/doctor/light.cpp", '#include "serial.hpp"\n')
+        self.assert_caught(layers.broken_arrows, "nor in its room")
+
     def test_embree_elsewhere(self):
         self.plant("src/render/film/film.cpp", "#include <embree3/rtcore.h>\n")
         self.assert_caught(layers.broken_arrows, "embree_scene alone")

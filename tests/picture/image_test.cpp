@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "../error_words.hpp"
 #include "../scratch.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
@@ -76,12 +77,7 @@ std::vector<float> shown(const std::vector<std::string>& channels) {
 }
 
 std::string refused(const std::vector<std::string>& channels) {
-  try {
-    shown(channels);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "taken";
+  return error_words([&] { shown(channels); }, "taken");
 }
 
 TEST(Image, ColoursAreFoundByName) {

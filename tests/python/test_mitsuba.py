@@ -116,12 +116,13 @@ def test_measured(llvm, cache):
 @needs_llvm
 @pytest.mark.parametrize("fault", ["slopes", "alias"])
 def test_twin_with_a_planted_fault(llvm, cache, fault, monkeypatch):
-    from reflectree import _drjit
+    from reflectree import _drjit_forest
 
     if fault == "slopes":
-        monkeypatch.setattr(_drjit, "_linear", lambda dr, slope, u: u)
+        monkeypatch.setattr(_drjit_forest, "_linear", lambda dr, slope, u: u)
     else:
-        monkeypatch.setattr(_drjit.Forest, "choose", lambda self, slab, word, active: slab.x + dr.mul_hi(word, slab.y))
+        monkeypatch.setattr(_drjit_forest.Forest, "choose",
+                            lambda self, slab, word, active: slab.x + dr.mul_hi(word, slab.y))
     assert not chi2({"type": "reflectree", "nested": PRINCIPLED, "cache": cache}, 50)
 
 

@@ -7,7 +7,7 @@ import pytest
 from conftest import directions
 
 import reflectree as rt
-from reflectree import _drjit
+from reflectree import _drjit, _drjit_forest
 from reflectree._drjit_domain import Domain
 
 DOMAINS = ("projected_disk", "equal_area", "half_vector", "back_vector", "stretched", "mirror_vector", "normal_vector",
@@ -118,9 +118,9 @@ def test_leaves_by_alias_table_follow_the_density(sampler):
 def test_twin_with_a_planted_fault(fault, monkeypatch):
     sampler = rt.Sampler("ggx:alpha=0.2")
     if fault == "slopes":
-        monkeypatch.setattr(_drjit, "_linear", lambda dr, slope, u: u)
+        monkeypatch.setattr(_drjit_forest, "_linear", lambda dr, slope, u: u)
     else:
-        monkeypatch.setattr(_drjit.Forest, "choose",
+        monkeypatch.setattr(_drjit_forest.Forest, "choose",
                             lambda self, slab, word, active: slab.x + numpy_drjit.mul_hi(word, slab.y))
     assert chi_square(sampler) > 2 * (255 + 5 * np.sqrt(2 * 255))
 
@@ -129,7 +129,7 @@ def test_the_look_up_of_cosines():
     for borders in ([2.0**-17, 2], [2.0**-17, 0.1, 0.1000001, 0.5, 2],
                     np.concatenate([np.geomspace(2.0**-17, 1, 300)[:-1], [2]])):
         borders = np.asarray(borders, dtype=np.float32)
-        look_up = _drjit.CosineLookup(_drjit.Library(numpy_drjit, numpy_drjit), borders)
+        look_up = _drjit_forest.CosineLookup(_drjit_forest.Library(numpy_drjit, numpy_drjit), borders)
         c = np.concatenate([np.geomspace(2.0**-17, 1, 5000).astype(np.float32), borders[:-1]])
         c = np.clip(c, np.float32(2.0**-17), 1)
         assert np.array_equal(np.broadcast_to(look_up(c, True), len(c)), np.searchsorted(borders, c, side="right") - 1)

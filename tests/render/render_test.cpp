@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "../error_words.hpp"
 #include "../scratch.hpp"
 #include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
@@ -145,12 +146,7 @@ TEST(Render, ThePictureIsTheSameForAnyNumberOfThreads) {
 }
 
 std::string error_of(const std::string& xml) {
-  try {
-    parse_scene(xml, "bad.xml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_words([&] { parse_scene(xml, "bad.xml"); });
 }
 
 TEST(Render, BadScenesNameWhatIsWrongAndWhere) {

@@ -3,36 +3,19 @@
 // material say so.
 #include <gtest/gtest.h>
 
+#include "../error_words.hpp"
 #include "small_scenes.hpp"
 
 namespace reflectree::render {
 namespace {
 
-// A floor of `material` under a lamp, a sun and a sky.
 Scene floor_of(const std::string& material, const std::string& sampler) {
-  SceneOptions options;
-  options.sampler = sampler;
-  return parse_scene(
-      small_scene(
-          "3",
-          R"(<shape type="rectangle"><transform name="to_world"><scale value="3"/></transform>
-    <bsdf type="reflectree"><string name="material" value=")" +
-              material +
-              R"("/></bsdf></shape><emitter type="constant"><rgb name="radiance" value="0.3"/></emitter>
-    <emitter type="directional"><vector name="direction" x="0.2" y="0.5" z="-1"/><rgb name="irradiance" value="1"/>
-    </emitter><shape type="disk"><transform name="to_world"><rotate x="1" angle="120"/><translate y="2" z="1.5"/>
-    </transform><emitter type="area"><rgb name="radiance" value="2"/></emitter></shape>)",
-          "0,-4,1.4"),
-      "floor.xml", options);
+  return lit_floor(R"(<bsdf type="reflectree"><string name="material" value=")" + material + R"("/></bsdf>)",
+                   sampler);
 }
 
 std::string refusal(const std::string& material, const std::string& sampler) {
-  try {
-    floor_of(material, sampler);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return error_words([&] { floor_of(material, sampler); }, "");
 }
 
 TEST(Samplers, EveryOneShowsTheSamePicture) {

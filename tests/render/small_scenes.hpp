@@ -32,6 +32,22 @@ inline std::string grey(const std::string& value) {
   return R"(<bsdf type="diffuse"><rgb name="reflectance" value=")" + value + R"("/></bsdf>)";
 }
 
+// A floor under a lamp, a sun and a sky.
+inline Scene lit_floor(const std::string& bsdf, const std::string& sampler) {
+  SceneOptions options;
+  options.sampler = sampler;
+  return parse_scene(
+      small_scene("3",
+                  R"(<shape type="rectangle"><transform name="to_world"><scale value="3"/></transform>)" +
+                      bsdf +
+                      R"(</shape><emitter type="constant"><rgb name="radiance" value="0.3"/></emitter>
+    <emitter type="directional"><vector name="direction" x="0.2" y="0.5" z="-1"/><rgb name="irradiance" value="1"/>
+    </emitter><shape type="disk"><transform name="to_world"><rotate x="1" angle="120"/><translate y="2" z="1.5"/>
+    </transform><emitter type="area"><rgb name="radiance" value="2"/></emitter></shape>)",
+                  "0,-4,1.4"),
+      "floor.xml", options);
+}
+
 // A corner with a glossy ball, lit by a disk and a point; everything diffuse or glossy.
 inline Scene corner() {
   return parse_scene(

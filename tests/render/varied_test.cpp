@@ -2,26 +2,12 @@
 // A roughness that varies over a floor, by the sampler of its family: what two materials show in turn.
 #include <gtest/gtest.h>
 
+#include "../error_words.hpp"
 #include "reflectree/render/materials/scattering_family.hpp"
 #include "small_scenes.hpp"
 
 namespace reflectree::render {
 namespace {
-
-Scene floor_of(const std::string& bsdf, const std::string& sampler) {
-  SceneOptions options;
-  options.sampler = sampler;
-  return parse_scene(
-      small_scene("3",
-                  R"(<shape type="rectangle"><transform name="to_world"><scale value="3"/></transform>)" +
-                      bsdf +
-                      R"(</shape><emitter type="constant"><rgb name="radiance" value="0.3"/></emitter>
-    <emitter type="directional"><vector name="direction" x="0.2" y="0.5" z="-1"/><rgb name="irradiance" value="1"/>
-    </emitter><shape type="disk"><transform name="to_world"><rotate x="1" angle="120"/><translate y="2" z="1.5"/>
-    </transform><emitter type="area"><rgb name="radiance" value="2"/></emitter></shape>)",
-                  "0,-4,1.4"),
-      "floor.xml", options);
-}
 
 std::string squares(const std::string& name, const std::string& a, const std::string& b) {
   return R"(<texture name=")" + name + R"(" type="checkerboard"><rgb name="color0" value=")" + a +
@@ -41,35 +27,31 @@ std::string varied(const std::string& family, const std::string& values) {
 TEST(Varied, SquaresOfTwoRoughnessesAreWhatTwoMaterialsShow) {
   const std::string family = "ggx:alpha=0.25..0.75,f0=0.9/0.7/0.4", weight = squares("weight", "0", "1");
   const Sight reference =
-      look(floor_of("<bsdf type=\"blendbsdf\">" + weight + plain("ggx:alpha=0.25,f0=0.9/0.7/0.4") +
-                        plain("ggx:alpha=0.75,f0=0.9/0.7/0.4") + "</bsdf>",
-                    "cosine"),
+      look(lit_floor("<bsdf type=\"blendbsdf\">" + weight + plain("ggx:alpha=0.25,f0=0.9/0.7/0.4") +
+                         plain("ggx:alpha=0.75,f0=0.9/0.7/0.4") + "</bsdf>",
+                     "cosine"),
            8, 512, 1);
   for (const std::string sampler : {"exact", "one-shot"}) {
-    const Sight seen = look(floor_of(varied(family, squares("alpha", "0.25", "0.75")), sampler), 8, 128, 11);
+    const Sight seen = look(lit_floor(varied(family, squares("alpha", "0.25", "0.75")), sampler), 8, 128, 11);
     const Agreement same = agreement(seen, reference);
     EXPECT_TRUE(same(1.15)) << sampler << ": rms " << same.rms << ", z " << same.mean;
     EXPECT_FALSE(agreement(seen, reference, 1.02)(1.15)) << sampler;
   }
-  const Sight other = look(floor_of(varied(family, squares("alpha", "0.3", "0.75")), "one-shot"), 8, 128, 11);
+  const Sight other =
+      look(lit_floor(varied(family, squares("alpha", "0.3", "0.75")), "one-shot"), 8, 128, 11);
   EXPECT_FALSE(agreement(other, reference)(1.15)) << "0.3 in place of 0.25 is seen";
 }
 
 TEST(Varied, ANumberIsAMember) {
   const Scene member =
-      floor_of(varied("ggx:alpha=0.25..0.75", R"(<float name="alpha" value="0.5"/>)"), "one-shot");
+      lit_floor(varied("ggx:alpha=0.25..0.75", R"(<float name="alpha" value="0.5"/>)"), "one-shot");
   const Agreement same =
-      agreement(look(member, 8, 128, 3), look(floor_of(plain("ggx:alpha=0.5"), "cosine"), 8, 256, 5));
+      agreement(look(member, 8, 128, 3), look(lit_floor(plain("ggx:alpha=0.5"), "cosine"), 8, 256, 5));
   EXPECT_TRUE(same(1.15)) << "rms " << same.rms << ", z " << same.mean;
 }
 
 std::string refusal(const std::string& bsdf, const std::string& sampler = "one-shot") {
-  try {
-    floor_of(bsdf, sampler);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return error_words([&] { lit_floor(bsdf, sampler); }, "");
 }
 
 TEST(Varied, WhatIsOutsideOfTheRangeIsRefused) {

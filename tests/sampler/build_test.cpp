@@ -7,6 +7,7 @@
 #include <mutex>
 #include <set>
 
+#include "../error_words.hpp"
 #include "functions.hpp"
 #include "reflectree/error.hpp"
 
@@ -14,12 +15,7 @@ namespace reflectree {
 namespace {
 
 std::string error_of(const AnyBrdf& f, const BuildOptions& options = {}) {
-  try {
-    build(f, options);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return error_words([&] { build(f, options); }, "");
 }
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
@@ -99,12 +95,7 @@ TEST(Host, TheErrorDoesNotDependOnItsThreads) {
     return wi.z < 1e-3f && wo.z < 0.3f ? std::nanf("") : 0.3f;  // rare: met in the batches of the build
   };
   const auto message = [&](const Host& host) -> std::string {
-    try {
-      build(f, {}, host);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return error_words([&] { build(f, {}, host); }, "");
   };
   const std::string one = message({});
   EXPECT_NE(one, "");

@@ -19,7 +19,8 @@ from ._arrays import Samples
 from ._brdf import Brdf, function, load, material, members, models
 from ._checks import Check, Figure
 from ._conventions import direction, from_angles, function_of_angles, mitsuba_order, swapped, without_cosine
-from ._doctor import Diagnosis, Evidence, Finding, causes, doctor, samplers
+from ._diagnosis import Diagnosis, Evidence, Finding
+from ._doctor import causes, doctor, samplers
 from ._error import BuildWarning, Error
 from ._family import FamilySampler, load_family
 from ._sampler import BuildReport, Sampler, load_sampler

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The domains over Dr.Jit's arrays: from the square to wi and back; domain_map.hpp derives every line."""
+"""The domains over Dr.Jit's arrays: from the square to wi and back; domain_map.hpp and the maps that it
+includes derive every line."""
 
 from __future__ import annotations
 

@@ -115,44 +115,50 @@ REFLECTREE_INLINE void finish_one_shot(const Domain& domain, TrialBlock& b, Valu
   for (std::size_t k = 0; k < b.count; ++k) store_sample(b, values, k, out[b.index[k]]);
 }
 
+// Block after block: add(domain, i, block, no_sample) fills one with the next directions from i on.
+template <AcrossX across_x, Brdf F, class Add>
+REFLECTREE_INLINE void sample_one_shot_blocks(const OneShotSampler<F>& sampler, std::size_t n,
+                                              std::span<DirectionSample<ValueOf<F>>> out, const Add& add) {
+  assert(out.size() == n);
+  const PackedSampler& packed = sampler.packed();
+  TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
+  BlockValues<F> values(sampler.brdf(), packed.target);
+  const auto no_sample = [&](std::size_t i) { store_no_sample(values.zero(), out[i]); };
+  const Domain member = domain_of_all(sampler.brdf(), packed);
+  with_known_kind(member, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    for (std::size_t i = 0; i < n;) {
+      block.count = 0;
+      add(domain, i, block, no_sample);
+      finish_one_shot<across_x>(domain, block, values, out);
+    }
+  });
+}
+
 }  // namespace detail
 
 // One-shot by alias table: out[i] is sampler.sample(wo[i], u), called in order, from the same bits.
 template <Brdf F, RandomBits U>
 void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> wo, U& u,
                   std::span<DirectionSample<ValueOf<F>>> out) {
-  assert(out.size() == wo.size());
-  const PackedSampler& packed = sampler.packed();
-  detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
-  detail::BlockValues<F> values(sampler.brdf(), packed.target);
-  const auto no_sample = [&](std::size_t i) { detail::store_no_sample(values.zero(), out[i]); };
-  const Domain member = detail::domain_of_all(sampler.brdf(), packed);
-  with_known_kind(member, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    for (std::size_t i = 0; i < wo.size();) {
-      block.count = 0;
-      detail::add_by_alias(sampler.brdf(), packed, domain, wo, i, u, block, no_sample);
-      detail::finish_one_shot<detail::AcrossX::place>(domain, block, values, out);
-    }
-  });
+  detail::sample_one_shot_blocks<detail::AcrossX::place>(
+      sampler, wo.size(), out,
+      [&](const Domain& domain, std::size_t& i, detail::TrialBlock& block, const auto& no_sample)
+          REFLECTREE_INLINE_LAMBDA {
+            detail::add_by_alias(sampler.brdf(), sampler.packed(), domain, wo, i, u, block, no_sample);
+          });
 }
 
 // One-shot by monotone descent: out[i] is sampler.sample(wo[i], points[i].x, points[i].y).
 template <Brdf F>
 void sample_batch(const OneShotSampler<F>& sampler, std::span<const Direction> wo,
                   std::span<const Vec2<double>> points, std::span<DirectionSample<ValueOf<F>>> out) {
-  assert(points.size() == wo.size() && out.size() == wo.size());
-  const PackedSampler& packed = sampler.packed();
-  detail::TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
-  detail::BlockValues<F> values(sampler.brdf(), packed.target);
-  const auto no_sample = [&](std::size_t i) { detail::store_no_sample(values.zero(), out[i]); };
-  const Domain member = detail::domain_of_all(sampler.brdf(), packed);
-  with_known_kind(member, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    for (std::size_t i = 0; i < wo.size();) {
-      block.count = 0;
-      detail::add_by_descent(sampler.brdf(), packed, domain, wo, points, i, block, no_sample);
-      detail::finish_one_shot<detail::AcrossX::uniform>(domain, block, values, out);
-    }
-  });
+  assert(points.size() == wo.size());
+  detail::sample_one_shot_blocks<detail::AcrossX::uniform>(
+      sampler, wo.size(), out,
+      [&](const Domain& domain, std::size_t& i, detail::TrialBlock& block, const auto& no_sample)
+          REFLECTREE_INLINE_LAMBDA {
+            detail::add_by_descent(sampler.brdf(), sampler.packed(), domain, wo, points, i, block, no_sample);
+          });
 }
 
 // Exact: out[i] is distributed as sampler.sample(wo[i], u), independent of the others. Rejected trials begin

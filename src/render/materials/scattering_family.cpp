@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "adjoint.hpp"
-#include "reading/each.hpp"
+#include "each.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/text/number_text.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cosine_lobe.hpp"
-#include "reading/each.hpp"
+#include "each.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 #include "reflectree/render/shapes/embree_scene.hpp"
 

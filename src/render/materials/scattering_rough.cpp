@@ -4,9 +4,9 @@
 #include <array>
 
 #include "cosine_lobe.hpp"
+#include "each.hpp"
 #include "fresnel.hpp"
 #include "microfacet.hpp"
-#include "reading/each.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 
 namespace reflectree::render {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "cosine_lobe.hpp"
+#include "each.hpp"
 #include "fresnel.hpp"
-#include "reading/each.hpp"
 #include "reflectree/render/materials/scattering.hpp"
 
 namespace reflectree::render {
@@ -77,17 +77,23 @@ struct SmoothPlastic final : Each<SmoothPlastic> {
   }
 };
 
-// Radiance that is refracted is scaled by the square of the relative index: it is squeezed into a narrower
-// cone (Veach 1997, 5.2).
-struct Glass final : Each<Glass> {
+// What mirrors some of the light and lets the rest through: into two directions, and nowhere else.
+template <class Self>
+struct Clear : Each<Self> {
   float eta;
   Texture reflectance, transmittance;
-  Glass(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
-  Asks asks() const override { return std::max(asks_for(reflectance), asks_for(transmittance)); }
+  Clear(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
+  Scattering::Asks asks() const override { return std::max(asks_for(reflectance), asks_for(transmittance)); }
   Rgb f_cos(Direction, Direction, Place) const override { return {}; }
   bool transmits() const override { return true; }
   Lobes lobes() const override { return Lobes::delta; }
   float pdf(Direction, Direction, Place) const override { return 0; }
+};
+
+// Radiance that is refracted is scaled by the square of the relative index: it is squeezed into a narrower
+// cone (Veach 1997, 5.2).
+struct Glass final : Clear<Glass> {
+  using Clear::Clear;
   std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
     const Dielectric f = fresnel(wo.z, eta);
     return scatter(wo, place, f, 1 / (f.eta * f.eta), u);
@@ -104,15 +110,8 @@ struct Glass final : Each<Glass> {
 
 // The light that is mirrored once, three times, ... inside: r + t r t + t r^3 t + ... = 2 r / (1 + r), r + t
 // = 1.
-struct Pane final : Each<Pane> {
-  float eta;
-  Texture reflectance, transmittance;
-  Pane(float e, Texture r, Texture t) : eta(e), reflectance(std::move(r)), transmittance(std::move(t)) {}
-  Asks asks() const override { return std::max(asks_for(reflectance), asks_for(transmittance)); }
-  Rgb f_cos(Direction, Direction, Place) const override { return {}; }
-  bool transmits() const override { return true; }
-  Lobes lobes() const override { return Lobes::delta; }
-  float pdf(Direction, Direction, Place) const override { return 0; }
+struct Pane final : Clear<Pane> {
+  using Clear::Clear;
   std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {
     const float once = fresnel(std::abs(wo.z), eta).reflectance, all = 2 * once / (1 + once);
     if (to_unit_float(u()) < all) return Scattered{mirror_direction(wo), 0, eval(reflectance, place), true};

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "albedo_build.hpp"
-#include "albedo_integrals.hpp"
+#include "build/albedo/albedo_build.hpp"
+#include "build/albedo/integrals.hpp"
 #include "canonical.hpp"
 #include "check_options.hpp"
 #include "findings.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "albedo_integrals.hpp"
-#include "albedo_panels.hpp"
+#include "build/albedo/integrals.hpp"
+#include "build/albedo/panels.hpp"
 #include "canonical.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"

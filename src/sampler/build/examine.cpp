@@ -2,168 +2,20 @@
 #include "examine.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "reflectree/error.hpp"
-#include "reflectree/math/frame.hpp"
-#include "reflectree/math/random.hpp"
 #include "refuse.hpp"
+#include "symmetry_of.hpp"
 
 namespace reflectree::detail {
 
 namespace {
 
-constexpr std::size_t pairs = 4096;
 constexpr float symmetric_enough = 1e-4f;  // mirror images are one function, up to rounding
-constexpr float isotropic_enough = 3e-4f;  // relative, of every pair, beyond what rounding explains
 
 Direction flipped(Direction w) { return {w.x, -w.y, w.z}; }
-
-// Pairs in the plane of incidence of wo, spread by the maps of two domains so that lobes are met.
-void make_pairs(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Direction>& wi) {
-  Pcg32 u(seed, 11);
-  while (wo.size() < pairs) {
-    const float cos_theta_o = max(to_unit_float(u()), 1e-3f);
-    const float shrink = wo.size() % 4 < 2 ? 1.f : to_unit_float(u());
-    const Vec2<float> p{shrink * (2 * to_unit_float(u()) - 1), shrink * (2 * to_unit_float(u()) - 1)};
-    const Domain domain{wo.size() % 2 ? DomainKind::half_vector : DomainKind::equal_area, Symmetry::none, 0};
-    const Direction known = wo_from_cosine(cos_theta_o);
-    const DomainPoint q = lift(domain, known, p);
-    if (!(q.geometry.wi.z > 1e-3f)) continue;
-    wo.push_back(known), wi.push_back(q.geometry.wi);
-  }
-}
-
-// Beside the lobes that f tells of, and the ridges.
-void add_lobe_pairs(const AnyBrdf& f, const std::vector<Ridge>& ridges, std::vector<Direction>& wo,
-                    std::vector<Direction>& wi) {
-  const auto add = [&](Direction known, const SharpLobe& lobe) {
-    const LocalFrame<float> frame = frame_from_normal(lobe.centre);
-    for (const float r : {0.f, 0.3f, 0.6f}) {
-      for (const Direction& along : {frame.s, frame.t}) {
-        const Direction w = normalize(lobe.centre + r * lobe.width * along);
-        if (w.z > 1e-3f) wo.push_back(known), wi.push_back(w);
-      }
-    }
-  };
-  for (int k = 0; k < 16; ++k) {
-    const float theta = 0.05f + 0.1f * float(k);
-    const Direction known = wo_from_cosine(max(cos(theta), 1e-3f));
-    if (f.traits().sharp) {
-      for (const SharpLobe& lobe : f.traits().sharp(known)) add(known, lobe);
-    }
-    for (const Ridge& ridge : ridges) {
-      if (const auto lobe = ridge.at(theta)) add(known, *lobe);
-    }
-  }
-}
-
-using Values = std::vector<float>;
-Values values_at(const AnyBrdf& f, const std::vector<Direction>& wo, const std::vector<Direction>& wi) {
-  Values values(wo.size() * std::size_t(f.channels()));
-  f.eval(wo, wi, values);
-  return values;
-}
-
-void refuse_bad_values(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
-                       const std::vector<Direction>& wi) {
-  const auto channels = std::size_t(f.channels());
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (is_good(values[k])) continue;
-    const std::size_t i = k / channels;
-    refuse_values(std::span(values).subspan(i * channels, channels), f.traits().name, wo[i], wi[i]);
-  }
-}
-
-// What f takes on beside a pair, where rounding moves directions: lowest and highest, per channel.
-struct Range {
-  float lo, hi;
-};
-std::vector<Range> ranges_beside(const AnyBrdf& f, Direction wo, Direction wi, Pcg32& u) {
-  constexpr std::size_t neighbours = 24;
-  constexpr float far = 4e-7f;
-  const auto moved = [&u](Direction w) {
-    const auto shift = [&u] { return far * (2 * to_unit_float(u()) - 1); };
-    return normalize(Direction{w.x + shift(), w.y + shift(), max(w.z + shift(), 1e-7f)});
-  };
-  std::vector<Direction> o{wo}, i{wi};
-  while (o.size() < neighbours) o.push_back(moved(wo)), i.push_back(moved(wi));
-  const auto channels = std::size_t(f.channels());
-  const Values values = values_at(f, o, i);
-  std::vector<Range> ranges(channels, {1e38f, -1e38f});
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    Range& r = ranges[k % channels];
-    r = {min(r.lo, values[k]), max(r.hi, values[k])};
-  }
-  return ranges;
-}
-
-// Sum of |a - b| over half the sum of both.
-float difference(const Values& a, const Values& b) {
-  double miss = 0, sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    miss += double(abs(a[i] - b[i])), sum += 0.5 * (double(a[i]) + double(b[i]));
-  }
-  return sum > 0 ? float(miss / sum) : 0.f;
-}
-
-// A pair at which f is not what it is at the images of both directions.
-struct Change {
-  std::size_t pair;
-  float here, there;
-};
-
-// Whether f changes when `image(k, w)` takes both directions of pair k elsewhere, by more than rounding
-// explains: the pairs that change most are looked at again among their neighbours.
-template <class Image>
-std::optional<Change> change_under(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
-                                   const std::vector<Direction>& wi, std::uint64_t seed, const Image& image) {
-  const std::size_t looked_at = std::min<std::size_t>(64, wo.size());
-  const auto channels = std::size_t(f.channels());
-  std::vector<Direction> other_wo = wo, other_wi = wi;
-  for (std::size_t k = 0; k < wo.size(); ++k) other_wo[k] = image(k, wo[k]), other_wi[k] = image(k, wi[k]);
-  const Values other = values_at(f, other_wo, other_wi);
-  refuse_bad_values(f, other, other_wo, other_wi);
-  double mean = 0;
-  for (const float v : values) mean += double(v) / double(values.size());
-  const auto floor = float(1e-6 * mean);
-  std::vector<float> change(wo.size(), 0);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const float c = abs(values[k] - other[k]) / (max(values[k], other[k]) + floor + 1e-38f);
-    change[k / channels] = max(change[k / channels], c);
-  }
-  std::vector<std::size_t> order(wo.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::partial_sort(
-      order.begin(), order.begin() + std::ptrdiff_t(looked_at), order.end(),
-      [&](std::size_t a, std::size_t b) { return change[a] != change[b] ? change[a] > change[b] : a < b; });
-  Pcg32 jitter(seed, 14);
-  for (std::size_t n = 0; n < looked_at && change[order[n]] > isotropic_enough; ++n) {
-    const std::size_t k = order[n];
-    const auto here = ranges_beside(f, wo[k], wi[k], jitter),
-               there = ranges_beside(f, other_wo[k], other_wi[k], jitter);
-    for (std::size_t c = 0; c < channels; ++c) {
-      const float gap = max(here[c].lo - there[c].hi, there[c].lo - here[c].hi);
-      if (gap <= isotropic_enough * max(here[c].hi, there[c].hi) + floor) continue;
-      return Change{k, values[k * channels + c], other[k * channels + c]};
-    }
-  }
-  return std::nullopt;
-}
-
-// Whether f changes when both directions turn about the normal.
-bool is_anisotropic(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
-                    const std::vector<Direction>& wi, std::uint64_t seed) {
-  Pcg32 u(seed, 12);
-  std::vector<float> angle(wo.size());
-  for (float& a : angle) a = 6.2831853f * to_unit_float(u());
-  return change_under(f, values, wo, wi, seed,
-                      [&](std::size_t k, Direction w) { return turn(w, cos(angle[k]), sin(angle[k])); })
-      .has_value();
-}
 
 // The azimuth along which lobes reach farthest, and how much farther than across.
 struct Ellipse {
@@ -179,60 +31,6 @@ Ellipse ellipse_of(const AnyBrdf& f, const Target& target) {
   e.axis = pi * float(longest) / azimuths;
   e.ratio = shortest > 0 ? clamp(reach[longest] / shortest, 1.f, 400.f) : 1.f;
   return e;
-}
-
-// How much f differs from its mirror image about the vertical plane at an azimuth.
-float lopsided(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
-               const std::vector<Direction>& wi, float axis) {
-  std::vector<Direction> other_wo = wo, other_wi = wi;
-  const float c = cos(2 * axis), s = sin(2 * axis);
-  const auto image = [&](Direction w) { return Direction{c * w.x + s * w.y, s * w.x - c * w.y, w.z}; };
-  for (std::size_t k = 0; k < wo.size(); ++k) other_wo[k] = image(wo[k]), other_wi[k] = image(wi[k]);
-  return difference(values, values_at(f, other_wo, other_wi));
-}
-
-// A mirror plane nearby, by golden sections of what the mirror image differs by.
-float nearest_plane(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
-                    const std::vector<Direction>& wi, float guess) {
-  constexpr float golden = 0.618034f;
-  float lo = guess - 0.06f, hi = guess + 0.06f;
-  float a = hi - golden * (hi - lo), b = lo + golden * (hi - lo);
-  float at_a = lopsided(f, values, wo, wi, a), at_b = lopsided(f, values, wo, wi, b);
-  for (int round = 0; round < 40 && hi - lo > 1e-6f; ++round) {
-    if (at_a <= at_b) {
-      hi = b, b = a, at_b = at_a, a = hi - golden * (hi - lo), at_a = lopsided(f, values, wo, wi, a);
-    } else {
-      lo = a, a = b, at_a = at_b, b = lo + golden * (hi - lo), at_b = lopsided(f, values, wo, wi, b);
-    }
-  }
-  return at_a <= at_b ? a : b;
-}
-
-// The largest symmetry that every pair confirms, with its axis.
-ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
-                     const std::vector<Direction>& wi, const Ellipse& lobe, std::uint64_t seed) {
-  const auto holds = [&](const auto& image) { return !change_under(f, values, wo, wi, seed, image); };
-  const auto mirrors = [&](float axis) {
-    const float c = cos(2 * axis), s = sin(2 * axis);
-    return holds([&](std::size_t, Direction w) {
-      return Direction{c * w.x + s * w.y, s * w.x - c * w.y, w.z};
-    });
-  };
-  const bool half_turn = holds([](std::size_t, Direction w) { return Direction{-w.x, -w.y, w.z}; });
-  std::vector<float> guesses{0, 0.5f * pi, 0.25f * pi, 0.75f * pi};
-  if (f.traits().axis) guesses.insert(guesses.begin(), *f.traits().axis);
-  for (const float guess : guesses) {
-    if (!mirrors(guess)) continue;
-    // Of both planes of a half turn the one along the lobe is the axis.
-    const bool across = half_turn && abs(cos(guess - lobe.axis)) < 0.7f;
-    return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane,
-            across ? guess + 0.5f * pi : guess};
-  }
-  const float refined = nearest_plane(f, values, wo, wi, lobe.axis);
-  if (mirrors(refined)) return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane, refined};
-  // Tables made of patches stay in their own frame, in whose cells borders lie well.
-  const float axis = f.traits().phi_o_knots.empty() ? lobe.axis : 0.f;
-  return {half_turn ? ViewerSymmetry::half_turn : ViewerSymmetry::none, axis};
 }
 
 // The largest channel that a climb from the brightest pair finds, where that is suspiciously dark: the pairs
@@ -274,15 +72,6 @@ void fold_pair(ViewerSymmetry symmetry, Direction& wo, Direction& wi) {
   if (plane && wo.y < 0) mirror();
 }
 
-// Pairs whose viewers lie at azimuth 0, turned about the normal.
-void turn_at_random(std::uint64_t seed, std::vector<Direction>& wo, std::vector<Direction>& wi) {
-  Pcg32 u(seed, 15);
-  for (std::size_t k = 0; k < wo.size(); ++k) {
-    const float phi = 6.2831853f * to_unit_float(u()), c = cos(phi), s = sin(phi);
-    wo[k] = turn(wo[k], c, s), wi[k] = turn(wi[k], c, s);
-  }
-}
-
 // The frame of an anisotropic function, from pairs whose viewers lie at azimuth 0: they are turned about the
 // normal at random.
 void examine_anisotropic(const AnyBrdf& f, std::uint64_t seed, std::vector<Direction> wo,
@@ -291,7 +80,7 @@ void examine_anisotropic(const AnyBrdf& f, std::uint64_t seed, std::vector<Direc
   const Values values = values_at(f, wo, wi);
   refuse_bad_values(f, values, wo, wi);
   const Ellipse lobe = ellipse_of(f, seen.target);
-  seen.frame = frame_of(f, values, wo, wi, lobe, seed);
+  seen.frame = frame_of(f, values, wo, wi, lobe.axis, seed);
   seen.mirror_symmetric = false, seen.asymmetry = 1;
   // Where the axis of the symmetry is not that of the lobe, nothing is stretched.
   const bool along = abs(cos(seen.frame.axis - lobe.axis)) > 0.99f;
@@ -304,24 +93,6 @@ void examine_anisotropic(const AnyBrdf& f, std::uint64_t seed, std::vector<Direc
 }
 
 }  // namespace
-
-bool has_symmetry(const AnyBrdf& f, const ViewerFrame& frame, std::uint64_t seed) {
-  if (frame.symmetry == ViewerSymmetry::none) return true;
-  std::vector<Direction> wo, wi;
-  make_pairs(seed, wo, wi);
-  turn_at_random(seed, wo, wi);
-  const Values values = values_at(f, wo, wi);
-  const auto holds = [&](const auto& image) { return !change_under(f, values, wo, wi, seed, image); };
-  if (frame.isotropic()) return !is_anisotropic(f, values, wo, wi, seed);
-  const bool turns =
-      frame.symmetry == ViewerSymmetry::half_turn || frame.symmetry == ViewerSymmetry::two_planes;
-  if (turns && !holds([](std::size_t, Direction w) { return Direction{-w.x, -w.y, w.z}; })) return false;
-  if (!is_mirrored(frame.symmetry)) return true;
-  const float c = cos(2 * frame.axis), s = sin(2 * frame.axis);
-  return holds([&](std::size_t, Direction w) {
-    return Direction{c * w.x + s * w.y, s * w.x - c * w.y, w.z};
-  });
-}
 
 float reach_at(const AnyBrdf& f, const Target& target, float phi) {
   constexpr int steps = 160;

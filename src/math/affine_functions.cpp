@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Functions of one form, between two lines.
+#include "affine_logarithm.hpp"
+
+namespace reflectree {
+
+using namespace affine;
+
+namespace {
+
+// A concave function on [a, b] between the secant and, parallel to it, the tangent at t (nearly so: what its
+// slope misses counts).
+struct Curve {
+  double value, slope;
+};
+template <class Function>
+AffineForm concave(const AffineForm& x, const Function& f, double t, double alpha, RealInterval range,
+                   double unit) {
+  const double a = x.range.lo, b = x.range.hi;
+  const Curve at = f(t);
+  const double low = std::min(f(a).value - alpha * a, f(b).value - alpha * b);
+  const double high = at.value - alpha * t + std::abs(at.slope - alpha) * (b - a);
+  return between_lines(x, alpha, low, high, range, unit);
+}
+
+// sin and cos where they are concave; place: where the slope is alpha.
+template <class Function, class Place>
+AffineForm circular(const AffineForm& x, const Function& f, const Place& place, RealInterval range) {
+  const double a = x.range.lo, b = x.range.hi;
+  if (!(a >= 0 && b <= 1.5707963267948966)) return only_range(range, library);
+  const double alpha = b - a > 1e-7 ? (f(b).value - f(a).value) / (b - a) : f(0.5 * (a + b)).slope;
+  return concave(x, f, std::clamp(place(alpha), a, b), alpha, range, library);
+}
+
+}  // namespace
+
+AffineForm sqrt(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const AffineForm& x = settled.form();
+  const RealInterval range = sqrt(x.range);
+  const double a = std::sqrt(std::max(x.range.lo, 0.)), b = std::sqrt(std::max(x.range.hi, 0.));
+  if (!(b > 0) || !std::isfinite(b)) return only_range(range, rounded);
+  // sqrt x <= alpha x + 1 / (4 alpha) for any alpha.
+  const double alpha = 1 / (a + b);
+  AffineForm inside = x;
+  inside.range.lo = std::max(inside.range.lo, 0.);
+  AffineForm out = between_lines(inside, alpha, std::min(a - alpha * a * a, b - alpha * b * b), 0.25 / alpha,
+                                 range, rounded);
+  LogForm half = log_of(the_x);
+  half.middle *= 0.5, half.error *= 0.5;
+  for (double& v : half.slope) v *= 0.5;
+  add_log(out, half, 1, log_one, rounded);
+  return out;
+}
+
+AffineForm exp(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const AffineForm& x = settled.form();
+  const RealInterval range = exp(x.range);
+  if (!is_known(x)) return only_range(range, library);
+  return exponential({x.middle, x.slope, x.error}, x.range, range, library);
+}
+
+AffineForm log(const AffineForm& x) {
+  const RealInterval range = log(x.range);
+  const double a = x.range.lo, b = x.range.hi;
+  if (!(a > 0) || !std::isfinite(b)) return only_range(range, library);
+  const auto [la, lb, alpha, low, high] = lines_of_log(a, b);
+  const double slack = (1 + std::abs(la) + std::abs(lb)) * own;
+  return between_lines(x, alpha, low - slack, high + slack, range, library);
+}
+
+AffineForm log1p(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const AffineForm& x = settled.form();
+  const RealInterval range = log1p(x.range);
+  const double a = x.range.lo, b = x.range.hi;
+  if (!(a > -1) || !std::isfinite(b)) return only_range(range, library);
+  const auto f = [](double v) { return Curve{std::log1p(v), 1 / (1 + v)}; };
+  const double alpha = b - a > 1e-6 * (1 + a) ? (std::log1p(b) - std::log1p(a)) / (b - a) : 2 / (2 + a + b);
+  // The tangent where 1 / (1 + t) = alpha, t kept inside.
+  const double t = std::clamp((1 - alpha) / alpha, a, b);
+  return concave(x, f, t, alpha, range, library);
+}
+
+AffineForm pow(const AffineForm& x, const AffineForm& y) {
+  const RealInterval range = pow(x.range, y.range);
+  if (!(x.range.lo > 0)) return only_range(range, library);
+  // The roundings of log and product, and of exp, are more than those of pow.
+  AffineForm out = exp(y * log(x));
+  out.range = intersection(out.range, rounded_range(range, library));
+  return out;
+}
+
+AffineForm sin(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const auto f = [](double v) { return Curve{std::sin(v), std::cos(v)}; };
+  const auto place = [](double slope) { return std::acos(std::clamp(slope, -1., 1.)); };
+  return circular(settled.form(), f, place, sin(settled.form().range));
+}
+AffineForm cos(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const auto f = [](double v) { return Curve{std::cos(v), -std::sin(v)}; };
+  const auto place = [](double slope) { return std::asin(std::clamp(-slope, -1., 1.)); };
+  return circular(settled.form(), f, place, cos(settled.form().range));
+}
+AffineForm acos(const AffineForm& x) { return only_range(acos(x.range), library); }
+AffineForm atan2(const AffineForm& y, const AffineForm& x) {
+  return only_range(atan2(y.range, x.range), library);
+}
+
+}  // namespace reflectree

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "albedo_axes.hpp"
+#include "reflectree/sampler/known/albedo.hpp"
+
+namespace reflectree {
+
+using namespace detail;
+
+namespace {
+
+// A row more at both ends of the axis in the middle, on the cubic through the four rows there.
+std::vector<float> with_ends(const std::vector<float>& values, std::size_t rows, std::size_t inner) {
+  const std::size_t outer = values.size() / (rows * inner);
+  std::vector<float> out(outer * (rows + 2) * inner);
+  for (std::size_t o = 0; o < outer; ++o) {
+    const float* from = values.data() + o * rows * inner;
+    float* to = out.data() + o * (rows + 2) * inner;
+    std::copy_n(from, rows * inner, to + inner);
+    for (std::size_t i = 0; i < inner; ++i) {
+      const auto beyond = [&](std::size_t first, std::ptrdiff_t step) {
+        const auto at = [&](std::ptrdiff_t k) {
+          return double(from[std::size_t(std::ptrdiff_t(first) + k * step) * inner + i]);
+        };
+        return float(4 * at(0) - 6 * at(1) + 4 * at(2) - at(3));
+      };
+      to[i] = beyond(0, 1), to[(rows + 1) * inner + i] = beyond(rows - 1, -1);
+    }
+  }
+  return out;
+}
+
+// The same where the axis is the azimuth, whose rows beyond the ends of a segment are told by row_at.
+std::vector<float> with_azimuths(const AlbedoTable& table, const std::vector<float>& values) {
+  const std::size_t rows = table.phi_o.size(), inner = table.cos_theta_o.size(),
+                    outer = values.size() / (rows * inner);
+  const std::vector<AlbedoSegment> segments = segments_of(table);
+  std::vector<float> out;
+  for (std::size_t o = 0; o < outer; ++o) {
+    const float* from = values.data() + o * rows * inner;
+    for (const AlbedoSegment& segment : segments) {
+      for (std::ptrdiff_t k = -1; k <= std::ptrdiff_t(segment.rows); ++k) {
+        const Beyond b = row_at(table, segment, k);
+        for (std::size_t i = 0; i < inner; ++i) {
+          float value = 0;
+          for (std::size_t m = 0; m < 4; ++m) value += b.weight[m] * from[b.row[m] * inner + i];
+          out.push_back(value);
+        }
+      }
+    }
+  }
+  return out;
+}
+// All values of a table with the rows beyond the ends of every axis.
+std::vector<float> padded(const AlbedoTable& table) {
+  std::vector<float> values = table.albedo;
+  std::size_t inner = table.cos_theta_o.size();
+  if (!table.phi_o.empty()) {
+    values = with_azimuths(table, values);
+    inner *= padded_rows(table.phi_o, segments_of(table));
+  }
+  for (const AlbedoAxis& axis : table.parameters) {
+    values = with_ends(values, axis.rows, inner);
+    inner *= axis.rows + 2;
+  }
+  return values;
+}
+
+// The lines between the nodes of a row.
+void pack_row(const std::vector<float>& cosines, const float* albedo, std::vector<AlbedoPiece>& pieces) {
+  for (std::size_t i = 0; i + 1 < cosines.size(); ++i) {
+    const double c0 = double(cosines[i]), c1 = double(cosines[i + 1]);
+    const double a0 = double(albedo[i]), a1 = double(albedo[i + 1]);
+    // Between neighbouring floats lies nothing; a line through both sides of a jump would lose every digit.
+    // The last line holds its upper end, too.
+    const bool neighbours = i + 2 < cosines.size() && std::nextafter(cosines[i], 2.f) >= cosines[i + 1];
+    const double slope = neighbours ? 0 : (a1 - a0) / (c1 - c0);
+    pieces.push_back({float(a0 - slope * c0), float(slope)});
+  }
+}
+
+}  // namespace
+
+float PackedAlbedo::at(float cos_theta_o, float phi_o, const Coordinates& at) const {
+  RowsOfAxis azimuth;
+  std::size_t azimuths = 1;
+  if (!segments.empty()) {
+    const Segment& segment = segment_at(phi_o);
+    azimuth = rows_of_azimuth(segment.first, segment.last + 2,
+                              max((phi_o - segment.phi_o) * segment.rows_per_radian, 0.f));
+    azimuths = segments.back().first + segments.back().last + 4;
+  }
+  const AlbedoPiece* column = pieces.data() + lookup(cos_theta_o);
+  return over_rows(parameters, azimuth, azimuths, at, [&](std::size_t r) {
+    const AlbedoPiece& piece = column[r * row];
+    return piece.base + piece.slope * cos_theta_o;
+  });
+}
+
+const PackedAlbedo::Segment& PackedAlbedo::segment_at(float phi_o) const {
+  const auto after = std::upper_bound(segments.begin() + 1, segments.end(), phi_o,
+                                      [](float phi, const Segment& s) { return phi < s.phi_o; });
+  return *(after - 1);
+}
+
+PackedAlbedo pack(const AlbedoTable& table) {
+  const std::size_t columns = table.cos_theta_o.size();
+  PackedAlbedo packed{CosineLookup(table.cos_theta_o), {}, columns - 1, {}};
+  packed.parameters = table.parameters;
+  std::size_t rows = 0;
+  for (const AlbedoSegment& segment : segments_of(table)) {
+    const float begin = table.phi_o[segment.first], end = table.phi_o[segment.first + segment.rows - 1];
+    packed.segments.push_back({begin, float(segment.rows - 1) / (end - begin), std::uint32_t(rows),
+                               std::uint32_t(segment.rows - 2)});
+    rows += segment.rows + 2;
+  }
+  const std::vector<float> values = padded(table);
+  for (std::size_t first = 0; first < values.size(); first += columns)
+    pack_row(table.cos_theta_o, values.data() + first, packed.pieces);
+  return packed;
+}
+
+}  // namespace reflectree
