@@ -18,11 +18,11 @@ CosineLookup lookup_of(const Partition& partition) {
   return CosineLookup(cosines);
 }
 
-void index(const Partition& partition, PackedForest& forest) {
+void index(const Partition& partition, const SamplerData& data, PackedForest& forest) {
   if (partition.coordinates.size() == 1) {
     forest.lookup = lookup_of(partition);
   } else {
-    forest.tree = SlabTree(partition);
+    forest.tree = SlabTree(partition, data.parameters);
   }
 }
 
@@ -66,7 +66,7 @@ std::size_t bytes_of(const PackedForest& forest) {
 
 PackedViewer pack_viewer(const SamplerData& data) {
   PackedViewer viewer{pack(data.albedo), data.frame};
-  viewer.parameters = data.parameters, viewer.law = data.law;
+  viewer.family = pack(data.parameters, data.law);
   viewer.turns = data.frame.isotropic() || !data.domain.follows_surface();
   viewer.cos_axis = cos(data.frame.axis), viewer.sin_axis = sin(data.frame.axis);
   return viewer;
@@ -76,7 +76,8 @@ std::size_t slab_of(const Partition& partition, const Incidence& in) {
   const std::size_t axes = partition.coordinates.size();
   float known[2 + max_parameters] = {theta_of(in.wo), in.phi_o};
   const bool azimuth = axes > 1 && partition.coordinates[1].name == "phi_o";
-  if (axes > (azimuth ? 2 : 1)) std::copy_n(in.known_beyond.begin(), axes - 1, known + 1);  // of a family
+  const std::size_t of_viewer = azimuth ? 2 : 1;
+  std::copy_n(in.coordinates.begin(), axes - of_viewer, known + of_viewer);
   return find_slab(partition, known);
 }
 
@@ -86,11 +87,11 @@ PackedSampler pack(const SamplerData& data) {
   packed.domain = data.domain;
   packed.target = data.target;
   packed.viewer = pack_viewer(data);
-  index(data.exact_partition, packed.exact);
+  index(data.exact_partition, data, packed.exact);
   in_packed_order(data.exact, data.exact_partition, [&](const MajorantTree& tree) {
     append(tree, double(tree.volume) / total_mass(tree), packed.exact);
   });
-  index(data.one_shot_partition, packed.one_shot);
+  index(data.one_shot_partition, data, packed.one_shot);
   in_packed_order(data.one_shot, data.one_shot_partition, [&](const DensityTree& tree) {
     const std::vector<std::uint32_t> mass = append(tree, 0, packed.one_shot);
     packed.one_shot.slabs.back().first_node = std::uint32_t(packed.one_shot.nodes.size());

@@ -95,7 +95,8 @@ const PackedSlab& packed_slab(const PackedForest& forest, std::size_t slabs, std
   return forest.slabs[forest.tree.empty() ? slabs - 1 - canonical : canonical];
 }
 
-void check_borders(const char* mode, const Partition& partition, const PackedForest& forest, Worst& worst) {
+void check_borders(const char* mode, const SamplerData& data, const Partition& partition,
+                   const PackedForest& forest, Worst& worst) {
   const std::vector<SlabBox> boxes = slab_boxes(partition);
   worst.must(forest.slabs.size() == boxes.size(), std::string(mode) + ": one packed slab per slab");
   if (forest.slabs.size() != boxes.size()) return;
@@ -107,6 +108,11 @@ void check_borders(const char* mode, const Partition& partition, const PackedFor
       for (const float y : {0.001f, 0.5f, 0.999f}) {
         std::array<float, 1 + max_parameters> others{};
         for (std::size_t a = 1; a < axes; ++a) others[a - 1] = linear_mix(y, boxes[s].lo[a], boxes[s].hi[a]);
+        const std::size_t parameters = data.parameters.size();
+        for (std::size_t p = 0; p < parameters; ++p) {
+          float& other = others[axes - 1 - parameters + p];
+          other = value_of(data.parameters[p], other);
+        }
         const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), others.data());
         worst.must(found == s, std::string(mode) +
                                    text(", theta_o %.6g, slab %.0f: another slab", double(theta), double(s)));
@@ -118,7 +124,7 @@ void check_borders(const char* mode, const Partition& partition, const PackedFor
       for (const float y : {0.001f, 0.5f, 0.999f}) {
         const float theta = linear_mix(x, boxes[s].lo[0], boxes[s].hi[0]);
         const float phi = linear_mix(y, boxes[s].lo[1], boxes[s].hi[1]);
-        const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), phi);
+        const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), &phi);
         worst.must(found == s, std::string(mode) + text(", theta_o %.6g, phi_o %.6g: another slab",
                                                         double(theta), double(phi)));
       }
@@ -223,8 +229,8 @@ struct Descent {
 
 std::vector<CheckResult> check_packing(const SamplerData& data, const PackedSampler& packed) {
   Worst slabs, leaves, chosen, descent;
-  check_borders("exact", data.exact_partition, packed.exact, slabs);
-  check_borders("one-shot", data.one_shot_partition, packed.one_shot, slabs);
+  check_borders("exact", data, data.exact_partition, packed.exact, slabs);
+  check_borders("one-shot", data, data.one_shot_partition, packed.one_shot, slabs);
   if (slabs.excess > 1) return {check_albedo(data, packed), slabs.result("packed_slabs")};
   const auto check_tree = [&](const char* mode, const PackedForest& forest, std::size_t slab_number,
                               std::size_t slab_total, const CanonicalTree& tree, double volume) {

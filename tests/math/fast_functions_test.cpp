@@ -95,5 +95,23 @@ TEST(FastFunctions, Exponential) {
   EXPECT_TRUE(std::isnan(exp_of_negative(std::numeric_limits<float>::quiet_NaN())));
 }
 
+TEST(FastFunctions, Logarithm) {
+  const auto fast = [](float x) { return log_of_positive(x); };
+  const auto right = [](double x) { return std::log(x); };
+  EXPECT_LT(worst_ratio(0.5f, 2, fast, right), 2.5e-7);
+  EXPECT_LT(worst_ratio(0.99f, 1.01f, fast, right), 2.5e-7);
+  // Over all normal numbers, evenly in their logarithm.
+  const auto at = [](float x) { return log_of_positive(std::bit_cast<float>(std::uint32_t(x))); };
+  const auto right_at = [](double x) { return std::log(double(std::bit_cast<float>(std::uint32_t(x)))); };
+  EXPECT_LT(worst_ratio(0x1p23f, 254 * 0x1p23f, at, right_at), 2.5e-7);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(log_of_positive(1), 0);
+  EXPECT_EQ(log_of_positive(0), -infinity);
+  EXPECT_EQ(log_of_positive(infinity), infinity);
+  EXPECT_EQ(log_of_positive(1e-40f), std::log(1e-40f));
+  EXPECT_TRUE(std::isnan(log_of_positive(-1)));
+  EXPECT_TRUE(std::isnan(log_of_positive(std::numeric_limits<float>::quiet_NaN())));
+}
+
 }  // namespace
 }  // namespace reflectree

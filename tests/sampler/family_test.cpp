@@ -106,30 +106,79 @@ TEST(Family, AlbedoBetweenItsRows) {
   }
 }
 
-// Azimuths in two segments, with both sides of a leap, and two parameters: the table and its packed form.
-TEST(Family, AlbedoInSegments) {
-  AlbedoTable table{{min_cos_theta_o, 0.5f, 1}, {}, 1e-4f, {0, 0.5f, 1, 1, 2, 3}};
-  table.parameters = {{0, 1, 4}, {-1, 2, 5}};
-  const std::size_t columns = table.cos_theta_o.size(), azimuths = table.phi_o.size();
+// Every shape of a table and its packed form: one parameter or two, with and without azimuths, these in two
+// segments with both sides of a leap.
+TEST(Family, AlbedoOfEveryShape) {
+  const std::vector<float> two_segments{0, 0.5f, 1, 1, 2, 3};
+  const std::vector<AlbedoAxis> axes{{0, 1, 4}, {-1, 2, 5}};
   Pcg32 u(17);
-  for (std::size_t k = 0; k < columns * azimuths * 4 * 5; ++k) table.albedo.push_back(1 + to_unit_float(u()));
-  validate(table);
-  const PackedAlbedo packed = pack(table);
-  for (std::size_t k = 0; k < table.albedo.size(); ++k) {
-    std::size_t rest = k / columns;
-    float phi = table.phi_o[rest % azimuths];
-    if (rest % azimuths == 2) phi = std::nextafter(phi, 0.f);
-    rest /= azimuths;
-    const Coordinates at{float(rest % 4) / 3, -1 + 0.75f * float(rest / 4)};
-    const float c = table.cos_theta_o[k % columns];
-    EXPECT_NEAR(albedo_at(table, c, phi, at), table.albedo[k], 2e-5f) << k;
-    EXPECT_NEAR(packed.at(c, phi, at), table.albedo[k], 2e-5f) << k;
+  for (const bool turned : {false, true}) {
+    for (const std::size_t parameters : {1U, 2U}) {
+      AlbedoTable table{{min_cos_theta_o, 0.5f, 1}, {}, 1e-4f};
+      if (turned) table.phi_o = two_segments;
+      table.parameters.assign(axes.begin(), axes.begin() + std::ptrdiff_t(parameters));
+      const std::size_t columns = table.cos_theta_o.size(), azimuths = turned ? 6 : 1;
+      const std::size_t size = columns * azimuths * 4 * (parameters > 1 ? 5 : 1);
+      for (std::size_t k = 0; k < size; ++k) table.albedo.push_back(1 + to_unit_float(u()));
+      validate(table);
+      const PackedAlbedo packed = pack(table);
+      for (std::size_t k = 0; k < table.albedo.size(); ++k) {
+        std::size_t rest = k / columns;
+        float phi = turned ? table.phi_o[rest % azimuths] : 0;
+        if (turned && rest % azimuths == 2) phi = std::nextafter(phi, 0.f);
+        rest /= azimuths;
+        const Coordinates at{float(rest % 4) / 3, -1 + 0.75f * float(rest / 4)};
+        const float c = table.cos_theta_o[k % columns];
+        EXPECT_NEAR(albedo_at(table, c, phi, at), table.albedo[k], 2e-5f) << k;
+        EXPECT_NEAR(packed.at(c, phi, at), table.albedo[k], 2e-5f) << k;
+      }
+      for (int i = 0; i < 2000; ++i) {
+        const float c = max(to_unit_float(u()), min_cos_theta_o), phi = turned ? 3 * to_unit_float(u()) : 0;
+        const Coordinates at{to_unit_float(u()), 3 * to_unit_float(u()) - 1};
+        EXPECT_NEAR(packed.at(c, phi, at), albedo_at(table, c, phi, at), 2e-5f) << c << ' ' << phi;
+      }
+    }
   }
-  for (int i = 0; i < 2000; ++i) {
-    const float c = max(to_unit_float(u()), min_cos_theta_o), phi = 3 * to_unit_float(u());
-    const Coordinates at{to_unit_float(u()), 3 * to_unit_float(u()) - 1};
-    EXPECT_NEAR(packed.at(c, phi, at), albedo_at(table, c, phi, at), 2e-5f) << c << ' ' << phi;
+}
+
+// One-shot mode does not look up an albedo that is 0 nowhere: what says so must be right.
+TEST(Family, AlbedoThatIsZeroNowhere) {
+  Pcg32 u(29);
+  int positive = 0, zero = 0;
+  for (int k = 0; k < 400; ++k) {
+    AlbedoTable table{{min_cos_theta_o, 0.4f, 1}, {}, 1e-4f};
+    table.parameters = {{0, 1, 6}};
+    // Rows that differ by up to some orders of magnitude: cubics between them swing below 0.
+    const float contrast = 0.04f * float(k % 100);
+    for (int i = 0; i < 18; ++i) table.albedo.push_back(std::exp(-contrast * to_unit_float(u())));
+    const PackedAlbedo packed = pack(table);
+    float least = 1;
+    for (int i = 0; i < 1000; ++i) {
+      const float c = max(to_unit_float(u()), min_cos_theta_o);
+      least = min(least, packed.at(c, 0, {to_unit_float(u())}));
+    }
+    positive += packed.positive;
+    zero += least <= 0;
+    EXPECT_FALSE(packed.positive && least <= 0) << k;
   }
+  EXPECT_GT(positive, 20) << zero;
+  EXPECT_GT(zero, 20);
+  EXPECT_TRUE(metal().sampler.exact.packed().viewer.albedo.positive);
+}
+
+TEST(Family, NoSampleWhereTheAlbedoIsZero) {
+  const auto grey =
+      family([](Direction, Direction, const Parameters& p) { return p[0] / pi; }, {{"p", 0, 1}});
+  BuildOptions rough;
+  rough.expected_trials = 2, rough.one_shot_variance = 0.2f, rough.albedo_error = 1e-2f;
+  const auto s = make_sampler(grey, rough);
+  EXPECT_FALSE(s.exact.packed().viewer.albedo.positive);
+  Pcg32 u(1);
+  EXPECT_FALSE(s.exact.sample(wo_at(30), {0}, u));
+  EXPECT_FALSE(s.one_shot.sample(wo_at(30), {0}, u));
+  EXPECT_FALSE(s.one_shot.sample(wo_at(30), {0}, 0.3, 0.3));
+  EXPECT_TRUE(s.exact.sample(wo_at(30), {0.5f}, u));
+  EXPECT_TRUE(s.one_shot.sample(wo_at(30), {0.5f}, u));
 }
 
 TEST(Family, TrialsAndVarianceOfEveryMember) {

@@ -49,14 +49,39 @@ inline constexpr bool is_family_v = false;
 template <class F>
 inline constexpr bool is_family_v<Family<F>> = true;
 
+// A function that makes a BRDF of its own of each of its members: f.at(parameters).
+template <class F>
+concept MakesMembers = requires(const F& f, const Parameters& at) {
+  { f.at(at) } -> Brdf;
+};
+
+namespace detail {
+// What a member keeps, made once for all of its values.
+template <class F>
+struct KeptMember {
+  KeptMember(const F&, const Parameters&) {}
+};
+template <MakesMembers F>
+struct KeptMember<F> {
+  decltype(std::declval<const F&>().at(std::declval<const Parameters&>())) model;
+  KeptMember(const F& f, const Parameters& at) : model(f.at(at)) {}
+};
+}  // namespace detail
+
 // A family at fixed parameters: a BRDF. Keeps a reference to the function.
 template <FamilyFunction F>
 struct FamilyMember {
   const F* f;
   Parameters at;
+  [[no_unique_address]] detail::KeptMember<F> kept;
+
+  FamilyMember(const F* function, const Parameters& parameters)
+      : f(function), at(parameters), kept(*function, parameters) {}
 
   auto operator()(const ShadingGeometry<float>& g) const {
-    if constexpr (GeometryFamily<F>) {
+    if constexpr (MakesMembers<F>) {
+      return detail::call(kept.model, g);
+    } else if constexpr (GeometryFamily<F>) {
       return as_value((*f)(g, at));
     } else {
       return as_value((*f)(g.wo, g.wi, at));
@@ -65,7 +90,13 @@ struct FamilyMember {
   // In lanes, where f does it.
   template <class T>
   requires FamilyIn<F, T>
-  auto operator()(const ShadingGeometry<T>& g) const { return (*f)(g, at); }
+  auto operator()(const ShadingGeometry<T>& g) const {
+    if constexpr (MakesMembers<F>) {
+      return kept.model(g);
+    } else {
+      return (*f)(g, at);
+    }
+  }
   // What f tells of its members, where it does: traits(parameters).
   BrdfTraits traits() const {
     BrdfTraits traits;
@@ -78,9 +109,10 @@ struct FamilyMember {
   }
   // Cheap, for who makes a member for every sample.
   bool may_be_turned() const {
-    if constexpr (requires {
-                    { f->may_be_turned(at) } -> std::convertible_to<bool>;
-                  }) {
+    if constexpr (MakesMembers<F>) {
+      if constexpr (requires { f->may_be_turned(kept.model); }) return f->may_be_turned(kept.model);
+      return false;
+    } else if constexpr (requires { f->may_be_turned(at); }) {
       return f->may_be_turned(at);
     } else {
       return false;

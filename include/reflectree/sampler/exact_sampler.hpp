@@ -31,6 +31,13 @@ class ExactSampler {
         packed_(std::move(packed)),
         turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
 
+  // With f made in its place: a copy of what was just written would have to wait for it.
+  template <class... Parts>
+  ExactSampler(std::in_place_t, Data packed, const Parts&... parts)
+      : f_(parts...),
+        packed_(std::move(packed)),
+        turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
+
   const F& brdf() const { return f_; }
   // Whether f is evaluated in the frame where wo has no y, rather than in the caller's.
   bool evaluates_turned() const { return turned_; }

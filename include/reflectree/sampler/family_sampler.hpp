@@ -12,8 +12,39 @@
 
 namespace reflectree {
 
+namespace detail {
+
+// The member of a single sample. It looks at the caller's parameters, which were as a rule written just now,
+// in halves: a copy of both at once would have to wait for them to leave the store buffer.
+template <MakesMembers F>
+struct PassingMember {
+  const F* f;
+  const Parameters& at;
+  KeptMember<F> kept;
+
+  PassingMember(const F* function, const Parameters& parameters)
+      : f(function), at(parameters), kept(*function, parameters) {}
+  auto operator()(const ShadingGeometry<float>& g) const { return call(kept.model, g); }
+  bool may_be_turned() const {
+    if constexpr (requires { f->may_be_turned(kept.model); }) return f->may_be_turned(kept.model);
+    return false;
+  }
+};
+template <class F>
+struct BorrowedMember {
+  using type = FamilyMember<F>;
+};
+template <MakesMembers F>
+struct BorrowedMember<F> {
+  using type = PassingMember<F>;
+};
+
+}  // namespace detail
+template <MakesMembers F>
+inline constexpr bool is_member_v<detail::PassingMember<F>> = true;
+
 // What both modes share. A member's sampler is a sampler like any other (exact_sampler.hpp,
-// one_shot_sampler.hpp); `borrowed` ones must not outlive this.
+// one_shot_sampler.hpp); `borrowed` ones must outlive neither this nor the parameters.
 template <template <Brdf, class> class Mode, FamilyFunction F>
 class FamilyMode {
  public:
@@ -29,13 +60,15 @@ class FamilyMode {
   Mode<Member, std::shared_ptr<const PackedSampler>> at(const Parameters& parameters) const {
     return {Member{&family_->f, parameters}, packed_};
   }
-  Mode<Member, const PackedSampler*> borrowed(const Parameters& parameters) const {
-    return {Member{&family_->f, parameters}, packed_.get()};
+  Mode<typename detail::BorrowedMember<F>::type, const PackedSampler*> borrowed(
+      const Parameters& parameters) const {
+    return {std::in_place, packed_.get(), &family_->f, parameters};
   }
 
+  // One function to the optimiser, with the member and its sampler in registers.
   template <class... More>
-  std::optional<DirectionSample<Value>> sample(Direction wo, const Parameters& parameters,
-                                               More&&... more) const {
+  [[gnu::flatten]] std::optional<DirectionSample<Value>> sample(Direction wo, const Parameters& parameters,
+                                                                More&&... more) const {
     return borrowed(parameters).sample(wo, std::forward<More>(more)...);
   }
   // Per solid angle, sr^-1.

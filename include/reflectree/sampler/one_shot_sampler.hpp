@@ -34,6 +34,13 @@ class OneShotSampler {
         packed_(std::move(packed)),
         turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
 
+  // With f made in its place: a copy of what was just written would have to wait for it.
+  template <class... Parts>
+  OneShotSampler(std::in_place_t, Data packed, const Parts&... parts)
+      : f_(parts...),
+        packed_(std::move(packed)),
+        turned_(is_isotropic_by_formula(f_) && packed_->viewer.frame.isotropic()) {}
+
   const F& brdf() const { return f_; }
   // Whether f is evaluated in the frame where wo has no y, rather than in the caller's.
   bool evaluates_turned() const { return turned_; }
@@ -177,7 +184,7 @@ class OneShotSampler {
   }
 
   REFLECTREE_INLINE bool find(Direction wo, Incidence& in) const {
-    return detail::find_incidence_of(f_, *packed_, wo, in);
+    return detail::find_incidence_of(f_, *packed_, wo, in, false);
   }
   REFLECTREE_INLINE const PackedSlab& slab_of(const Incidence& in) const {
     return detail::slab_of<F>(packed_->one_shot, in);

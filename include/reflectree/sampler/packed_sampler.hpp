@@ -21,7 +21,7 @@ struct PackedForest {
   // Of isotropic functions.
   const PackedSlab& slab_at(float cos_theta_o) const { return slabs[lookup(cos_theta_o)]; }
   const PackedSlab& slab_at(const Incidence& in) const {
-    return tree.empty() ? slab_at(in.wo.z) : slabs[tree(in.wo.z, in.phi_o)];
+    return tree.empty() ? slab_at(in.wo.z) : slabs[tree(in.wo.z, &in.phi_o)];
   }
   // Of families.
   const PackedSlab& family_slab_at(const Incidence& in) const {
@@ -41,9 +41,9 @@ namespace detail {
 // What a function of type F needs to know of its viewer, where it is a BRDF or a family's member alike.
 template <class F>
 REFLECTREE_INLINE bool find_incidence_of(const F& f, const PackedSampler& packed, Direction wo,
-                                         Incidence& out) {
+                                         Incidence& out, bool needs_albedo = true) {
   if constexpr (is_member_v<F>) {
-    return find_incidence(packed.viewer, wo, f.at, out);
+    return find_incidence(packed.viewer, wo, f.at, out, needs_albedo);
   } else {
     return find_incidence(packed.viewer, wo, out);
   }
@@ -67,10 +67,11 @@ template <class F>
 REFLECTREE_INLINE Domain domain_of_all(const F& f, const PackedSampler& packed) {
   Domain domain = packed.domain;
   if constexpr (is_member_v<F>) {
-    Coordinates at{};
-    for (std::size_t i = 0; i < packed.viewer.parameters.size(); ++i)
-      at[i] = coordinate_of(packed.viewer.parameters[i], f.at[i]);
-    domain.scale_x = scale_by(packed.viewer.law.x, at), domain.scale_y = scale_by(packed.viewer.law.y, at);
+    const PackedFamily& family = packed.viewer.family;
+    Coordinates at;
+    // Outside of the range nothing is drawn.
+    if (find_coordinates(family, f.at, at))
+      domain.scale_x = family.x.at(at), domain.scale_y = family.y.at(at);
   }
   return domain;
 }
@@ -79,15 +80,15 @@ REFLECTREE_INLINE Domain domain_of_all(const F& f, const PackedSampler& packed) 
 
 // The same for who learns at run time whether there are parameters; without any, `at` does not matter.
 inline bool find_incidence(const PackedSampler& packed, Direction wo, const Parameters& at, Incidence& out) {
-  return packed.viewer.parameters.empty() ? find_incidence(packed.viewer, wo, out)
-                                          : find_incidence(packed.viewer, wo, at, out);
+  return packed.viewer.family.count == 0 ? find_incidence(packed.viewer, wo, out)
+                                         : find_incidence(packed.viewer, wo, at, out);
 }
 inline const PackedSlab& slab_at(const PackedSampler& packed, const PackedForest& forest,
                                  const Incidence& in) {
-  return packed.viewer.parameters.empty() ? forest.slab_at(in) : forest.family_slab_at(in);
+  return packed.viewer.family.count == 0 ? forest.slab_at(in) : forest.family_slab_at(in);
 }
 inline Domain domain_at(const PackedViewer& viewer, Domain domain, const Incidence& in) {
-  if (!viewer.parameters.empty()) domain.scale_x = in.scale_x, domain.scale_y = in.scale_y;
+  if (viewer.family.count > 0) domain.scale_x = in.scale_x, domain.scale_y = in.scale_y;
   return domain;
 }
 

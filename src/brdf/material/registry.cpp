@@ -31,11 +31,10 @@ ModelInfo entry() {
   };
   info.make_family = [](std::span<const Rgb> values, std::span<const VariedValues> varied,
                         const std::vector<ParameterRange>& ranges, const std::string& name) -> AnyFamily {
-    ModelFamily<M> family{model_from_values<M>(values), {}};
+    ModelFamily<M> family(model_from_values<M>(values));
     const auto parameters = M::describe().parameters;
     for (const VariedValues& v : varied) {
-      const auto first = parameters.begin() + std::ptrdiff_t(v.first);
-      family.varied.push_back({{first, first + std::ptrdiff_t(v.count)}, v.parameter});
+      for (std::size_t i = 0; i < v.count; ++i) family.vary(parameters[v.first + i], v.parameter);
     }
     return Family<ModelFamily<M>>{std::move(family), ranges, name};
   };

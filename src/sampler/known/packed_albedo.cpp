@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "albedo_axes.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
@@ -81,22 +82,46 @@ void pack_row(const std::vector<float>& cosines, const float* albedo, std::vecto
   }
 }
 
+// Whether cubics through four rows, one after another, are above 0 wherever they are looked up: their negative
+// weights, t (1 - t) / 2 in all, are at most 1/8. At nodes is enough, since lines lead from node to node.
+bool is_positive(const std::vector<float>& values, std::size_t columns) {
+  for (std::size_t i = 0; i + 3 * columns < values.size(); ++i) {
+    const auto [low, high] =
+        std::minmax({values[i], values[i + columns], values[i + 2 * columns], values[i + 3 * columns]});
+    if (!(low - 0.126f * (high - low) > 1e-4f * high)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-float PackedAlbedo::at(float cos_theta_o, float phi_o, const Coordinates& at) const {
-  RowsOfAxis azimuth;
-  std::size_t azimuths = 1;
+float PackedAlbedo::over_rows(const AlbedoPiece* column, float cos_theta_o, float phi_o,
+                              const Coordinates& at) const {
+  const Place first = place_at(parameters[0], at[0]);
+  const bool two = parameters.size() > 1;
+  const Place second = two ? place_at(parameters[1], at[1]) : Place{0, {1}};
+  std::size_t azimuth = 0;
+  std::array<float, 4> azimuths{};
   if (!segments.empty()) {
     const Segment& segment = segment_at(phi_o);
-    azimuth = rows_of_azimuth(segment.first, segment.last + 2,
-                              max((phi_o - segment.phi_o) * segment.rows_per_radian, 0.f));
-    azimuths = segments.back().first + segments.back().last + 4;
+    const float x = max((phi_o - segment.phi_o) * segment.rows_per_radian, 0.f);
+    const std::size_t k = std::min(std::size_t(x), std::size_t(segment.last));
+    azimuth = segment.first + k;
+    azimuths = cubic_weights(x - float(k));
   }
-  const AlbedoPiece* column = pieces.data() + lookup(cos_theta_o);
-  return over_rows(parameters, azimuth, azimuths, at, [&](std::size_t r) {
-    const AlbedoPiece& piece = column[r * row];
-    return piece.base + piece.slope * cos_theta_o;
-  });
+  float sum = 0;
+  for (std::size_t b = 0; b < (two ? 4 : 1); ++b) {
+    const AlbedoPiece* rows = column + second.first + (two ? b * parameters[1].stride : 0) + first.first;
+    if (segments.empty()) {
+      sum += second.weights[b] * cubic(rows, first.weights, cos_theta_o);
+      continue;
+    }
+    for (std::size_t a = 0; a < 4; ++a) {
+      const AlbedoPiece* side_by_side = rows + a * parameters[0].stride + azimuth;
+      sum += second.weights[b] * first.weights[a] * cubic(side_by_side, azimuths, cos_theta_o);
+    }
+  }
+  return sum;
 }
 
 const PackedAlbedo::Segment& PackedAlbedo::segment_at(float phi_o) const {
@@ -108,7 +133,6 @@ const PackedAlbedo::Segment& PackedAlbedo::segment_at(float phi_o) const {
 PackedAlbedo pack(const AlbedoTable& table) {
   const std::size_t columns = table.cos_theta_o.size();
   PackedAlbedo packed{CosineLookup(table.cos_theta_o), {}, columns - 1, {}};
-  packed.parameters = table.parameters;
   std::size_t rows = 0;
   for (const AlbedoSegment& segment : segments_of(table)) {
     const float begin = table.phi_o[segment.first], end = table.phi_o[segment.first + segment.rows - 1];
@@ -119,6 +143,19 @@ PackedAlbedo pack(const AlbedoTable& table) {
   const std::vector<float> values = padded(table);
   for (std::size_t first = 0; first < values.size(); first += columns)
     pack_row(table.cos_theta_o, values.data() + first, packed.pieces);
+  if (table.parameters.empty()) return packed;
+  packed.positive = rows == 0 && table.parameters.size() == 1 && is_positive(values, columns);
+  rows = std::max<std::size_t>(rows, 1);
+  for (const AlbedoAxis& axis : table.parameters) {
+    packed.parameters.push_back({axis.lo, float(axis.rows - 1) / (axis.hi - axis.lo), axis.rows, rows});
+    rows *= axis.rows + 2;
+  }
+  const std::vector<AlbedoPiece> by_row = std::exchange(packed.pieces, {});
+  packed.row = rows;
+  for (std::size_t column = 0; column + 1 < columns; ++column) {
+    for (std::size_t row = 0; row < rows; ++row)
+      packed.pieces.push_back(by_row[row * (columns - 1) + column]);
+  }
   return packed;
 }
 

@@ -45,6 +45,12 @@ struct ModelParameter {
     if (const auto* azimuth = std::get_if<3>(&member)) return to_rgb((model.**azimuth).degrees);
     return to_rgb(model.**std::get_if<0>(&member));
   }
+  // The number itself; null of a colour, and of an azimuth, which keeps more than its number.
+  const float* number_in(const M& model) const {
+    if (const auto* width = std::get_if<2>(&member)) return &((model.*(width->widths)).*(width->along));
+    if (const auto* number = std::get_if<0>(&member)) return &(model.**number);
+    return nullptr;
+  }
   void set(M& model, Rgb value) const {
     if (const auto* colour = std::get_if<1>(&member)) {
       model.** colour = value;

@@ -2,28 +2,41 @@
 // The family of a model whose parameters have ranges, by the names of its description.
 #pragma once
 
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
 #include "reflectree/brdf/family.hpp"
 #include "reflectree/brdf/material/description.hpp"
 
 namespace reflectree {
 
-// Numbers of a model that follow one parameter of a family: one, or both of a pair of widths.
 template <class M>
-struct VariedMember {
-  std::vector<ModelParameter<M>> parts;
-  std::size_t parameter = 0;  // of the family
-};
+class ModelFamily {
+  static_assert(std::is_trivially_copyable_v<M>);
 
-template <class M>
-struct ModelFamily {
-  M model;
-  std::vector<VariedMember<M>> varied;
+ public:
+  explicit ModelFamily(M model) : model_(std::move(model)) {}
+
+  // `part`, a number of the model, follows a parameter of the family; both of a pair of widths may follow one.
+  void vary(const ModelParameter<M>& part, std::size_t parameter) {
+    if (const float* number = part.number_in(model_)) {
+      const auto place =
+          reinterpret_cast<const std::byte*>(number) - reinterpret_cast<const std::byte*>(&model_);
+      numbers_.push_back({std::size_t(place), parameter});
+    } else {
+      others_.push_back({part, parameter});
+    }
+  }
 
   M at(const Parameters& parameters) const {
-    M member = model;
-    for (const VariedMember<M>& v : varied) {
-      const float value = parameters[v.parameter];
-      for (const ModelParameter<M>& part : v.parts) part.set(member, {value, value, value});
+    M member = model_;
+    for (const Number& n : numbers_)
+      std::memcpy(reinterpret_cast<std::byte*>(&member) + n.place, &parameters[n.parameter], sizeof(float));
+    for (const Other& o : others_) {
+      const float value = parameters[o.parameter];
+      o.part.set(member, {value, value, value});
     }
     return member;
   }
@@ -43,13 +56,27 @@ struct ModelFamily {
     }
   }
   BrdfTraits traits(const Parameters& parameters) const { return at(parameters).traits(); }
-  bool may_be_turned(const Parameters& parameters) const {
-    if constexpr (requires { model.alpha.round(); }) {
-      return at(parameters).alpha.round();
+  // Of a member.
+  bool may_be_turned(const M& member) const {
+    if constexpr (requires { member.alpha.round(); }) {
+      return member.alpha.round();
     } else {
       return false;
     }
   }
+
+ private:
+  // A member is made for every sample: floats are written to their places.
+  struct Number {
+    std::size_t place, parameter;
+  };
+  struct Other {
+    ModelParameter<M> part;
+    std::size_t parameter;
+  };
+  M model_;
+  std::vector<Number> numbers_;
+  std::vector<Other> others_;
 };
 
 // The parameter of that name, or the pair NAME_x, NAME_y; none where the model has none.
@@ -71,7 +98,7 @@ Family<ModelFamily<M>> model_family(M model, const std::vector<ParameterRange>& 
                                     std::string name = "family") {
   const std::string where(M::describe().name);
   check_ranges(ranges, where);
-  ModelFamily<M> family{std::move(model), {}};
+  ModelFamily<M> family(std::move(model));
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const ParameterRange& range = ranges[i];
     const std::vector<ModelParameter<M>> parts = parts_named<M>(range.name);
@@ -83,7 +110,7 @@ Family<ModelFamily<M>> model_family(M model, const std::vector<ParameterRange>& 
           "the range of " + range.name + " leaves that of the model", where,
           "stay between " + std::to_string(parts.front().lo) + " and " + std::to_string(parts.front().hi));
     }
-    family.varied.push_back({parts, i});
+    for (const ModelParameter<M>& part : parts) family.vary(part, i);
   }
   return {std::move(family), ranges, std::move(name)};
 }

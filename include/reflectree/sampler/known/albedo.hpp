@@ -65,12 +65,19 @@ struct PackedAlbedo {
     float phi_o, rows_per_radian;
     std::uint32_t first, last;  // the row before the segment's first one; the last that a cubic begins at
   };
-  // [phi_o][cos_theta_o]; every segment with a row more at both ends.
+  // Equidistant rows along a family's parameter, with one more at both ends.
+  struct Axis {
+    float lo, rows_per_unit;
+    std::uint32_t rows;
+    std::size_t stride;  // pieces from row to row
+  };
+  // [phi_o][cos_theta_o]; every segment with a row more at both ends. Of families
+  // [cos_theta_o][second parameter][first parameter][phi_o]: rows that are summed lie side by side.
   std::vector<AlbedoPiece> pieces;
-  std::size_t row = 0;            // pieces of one azimuth
+  std::size_t row = 0;            // pieces of one azimuth; of families those of one cos_theta_o
   std::vector<Segment> segments;  // empty for isotropic functions
-  // Of families, whose pieces have a row more at both ends of each of these, too.
-  std::vector<AlbedoAxis> parameters = {};
+  std::vector<Axis> parameters = {};
+  bool positive = false;  // of families: known to be 0 nowhere, so that who does not need it need not ask
 
   float at(float cos_theta_o) const {
     const AlbedoPiece& piece = pieces[lookup(cos_theta_o)];
@@ -90,7 +97,30 @@ struct PackedAlbedo {
   }
   const Segment& segment_at(float phi_o) const;
   // Of families.
-  float at(float cos_theta_o, float phi_o, const Coordinates& at) const;
+  float at(float cos_theta_o, float phi_o, const Coordinates& at) const {
+    const AlbedoPiece* column = pieces.data() + row * lookup(cos_theta_o);
+    if (parameters.size() > 1 || !segments.empty())
+      return max(over_rows(column, cos_theta_o, phi_o, at), 0.f);
+    const Place place = place_at(parameters.front(), at[0]);
+    return max(cubic(column + place.first, place.weights, cos_theta_o), 0.f);
+  }
+  // The four rows about a coordinate, by the first of them.
+  struct Place {
+    std::size_t first;
+    std::array<float, 4> weights;
+  };
+  static Place place_at(const Axis& axis, float at) {
+    const float x = clamp((at - axis.lo) * axis.rows_per_unit, 0.f, float(axis.rows - 1));
+    const std::size_t k = std::min(std::size_t(x), std::size_t(axis.rows - 2));
+    return {k * axis.stride, cubic_weights(x - float(k))};
+  }
+  // Over four pieces side by side.
+  static float cubic(const AlbedoPiece* piece, const std::array<float, 4>& weights, float c) {
+    float sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * (piece[i].base + piece[i].slope * c);
+    return sum;
+  }
+  float over_rows(const AlbedoPiece* column, float cos_theta_o, float phi_o, const Coordinates& at) const;
   std::size_t bytes() const {
     return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece) + segments.size() * sizeof(Segment);
   }
