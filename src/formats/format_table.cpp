@@ -46,8 +46,10 @@ AnyBrdf read_merl_material(ByteView bytes, const std::string& path, const std::s
 }
 
 std::vector<std::string> table_rows(ByteView bytes, const std::string& path) {
+  const ParameterTable table = read_parameter_table(bytes, path);
+  model_of(table);  // none is listed that cannot be read
   std::vector<std::string> names;
-  for (const ParameterTable::Row& row : read_parameter_table(bytes, path).rows) names.push_back(row.material);
+  for (const ParameterTable::Row& row : table.rows) names.push_back(row.material);
   return names;
 }
 

@@ -9,6 +9,7 @@
 #include "reference_values.hpp"
 #include "reflectree/brdf/models/sgd.hpp"
 #include "reflectree/formats/file.hpp"
+#include "reflectree/formats/format_table.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/measured_facts.hpp"
 #include "reflectree/formats/model_tables.hpp"
@@ -165,6 +166,10 @@ TEST(ParameterTable, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(error_of(synthetic::sgd_csv()), "no error");  // a single material needs no name
   EXPECT_NE(error_of("material,\n").find("no material"), std::string::npos);
   EXPECT_NE(error_of("material,a,b\nx,1,2\n").find("fit no model"), std::string::npos);
+  const Bytes foreign = synthetic::as_bytes("material,a,b\nx,1,2\n");  // and no member of it is listed
+  EXPECT_NE(
+      error_words([&] { format_of(foreign, "t.csv").list_members(foreign, "t.csv"); }).find("fit no model"),
+      std::string::npos);
   EXPECT_NE(error_of("material,a,b\nx,1\n").find("line 2: "), std::string::npos);
   EXPECT_NE(error_of("material,a,b\nx,1,2,3\n").find("line 2: "), std::string::npos);
   EXPECT_NE(error_of("material,a\n\nx,1e999\n").find("line 3: '1e999' is not a finite number"),

@@ -21,7 +21,9 @@ struct PackedForest {
   // Of isotropic functions.
   const PackedSlab& slab_at(float cos_theta_o) const { return slabs[lookup(cos_theta_o)]; }
   const PackedSlab& slab_at(const Incidence& in) const {
-    return tree.empty() ? slab_at(in.wo.z) : slabs[tree(in.wo.z, &in.phi_o)];
+    if (tree.empty()) return slab_at(in.wo.z);
+    const float phi_o = in.phi_o;  // of a copy, so that `in` may stay in registers
+    return slabs[tree(in.wo.z, &phi_o)];
   }
   // Of families.
   const PackedSlab& family_slab_at(const Incidence& in) const {
