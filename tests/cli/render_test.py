@@ -24,7 +24,7 @@ class Render(ProgramTest):
     def test_profile_shares_the_time_out(self):
         found = self.json_of("render", self.scene, "--spp", 1024, "--profile")
         self.assertGreater(found["timer_rings"], 10)
-        self.assertGreater(found["traversal"], 0.1)
+        self.assertGreater(found["traversal"], 0.02)  # a fifth as a rule, of some ninety rings
         self.assertAlmostEqual(sum(found[k] for k in ("traversal", "sample", "eval", "rest")), 1, places=6)
 
     def test_profile_books_every_integrator(self):
