@@ -26,7 +26,8 @@ class TableBuilder {
         at_(at),
         host_(host),
         effort_(effort),
-        error_(double(relative_error)),
+        asked_(double(relative_error)),
+        error_(asked_),
         known_(field.f.traits().theta_o_factor),
         told_(field.family ? nullptr : field.f.traits().albedo),
         start_(effort.evaluations),
@@ -73,7 +74,7 @@ class TableBuilder {
         }
         // Where nodes bend more than what lies between them allows, one of them may be wrong: a border
         // bends both panels.
-        if (round > 0) continue;
+        if (round > 0 || error_ > asked_) continue;
         const bool border = panel.bend > 2 && bent_until.contains(panel.lo);
         for (int i = border ? 0 : 1; i < (panel.bend > 4 ? 4 : 1); ++i) {
           cosines.push_back(cosine_of(node_of(panel, i)));
@@ -119,7 +120,7 @@ class TableBuilder {
         }
       }
       rim_ = true;
-      cells_x_ = 24, cells_y_ = 12;  // what was deceived once would be so again
+      if (error_ <= asked_) cells_x_ = 24, cells_y_ = 12;  // what was deceived once would be so again
       for (const Panel& p : missed) {
         for (int i = 0; i < 5; ++i) nodes_.erase(node_of(p, i));
       }
@@ -259,7 +260,8 @@ class TableBuilder {
   const Coordinates at_;
   const Host& host_;
   Effort& effort_;
-  double error_;
+  const double asked_;
+  double error_;  // what all are content with: more than was asked for where that is too dear
   const Factor known_;
   const std::function<double(Direction)> told_;  // the albedo, where f knows it
   std::uint64_t start_, budget_;
