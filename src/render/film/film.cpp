@@ -119,10 +119,8 @@ void add_sample(const Integrator& integrator, const Scene& scene, const Tile& ti
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x, ++n) {
       double* sums = film.sums.data() + 6 * pixel(x, y);
-      for (int k = 0; k < 3; ++k) {
-        const auto value = double(channel_value(found[n], k));
-        sums[k] += value, sums[k + 3] += value * value;
-      }
+      const double values[] = {double(found[n].r), double(found[n].g), double(found[n].b)};
+      for (int k = 0; k < 3; ++k) sums[k] += values[k], sums[k + 3] += values[k] * values[k];
     }
   }
 }

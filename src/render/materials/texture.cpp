@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "reflectree/math/scalar.hpp"
+
 namespace reflectree::render {
 
 namespace {
@@ -26,7 +28,7 @@ struct Between {
   int a, b;
   float t;
 };
-Between between(float place, int n, Texture::Wrap wrap) {
+REFLECTREE_INLINE Between between(float place, int n, Texture::Wrap wrap) {
   const float x = place - .5f, before = std::floor(x);
   const auto i = std::int64_t(before);
   return {wrapped(i, n, wrap), wrapped(i + 1, n, wrap), x - before};
