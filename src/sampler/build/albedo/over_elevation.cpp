@@ -65,7 +65,7 @@ class TableBuilder {
       std::vector<Panel> checked;
       std::set<double> bent_until;
       for (const Panel& panel : fresh)
-        if (panel.bend > 2) bent_until.insert(panel.hi);
+        if (panel.bend > 2.5) bent_until.insert(panel.hi);
       for (const Panel& panel : fresh) {
         if (panel.jump || panel.hi - panel.lo < 1e-5) continue;
         for (int k = 0; k < (round > 0 || panel.hi > 1.48 ? 3 : 1); ++k) {
@@ -75,7 +75,7 @@ class TableBuilder {
         // Where nodes bend more than what lies between them allows, one of them may be wrong: a border
         // bends both panels.
         if (round > 0 || error_ > asked_) continue;
-        const bool border = panel.bend > 2 && bent_until.contains(panel.lo);
+        const bool border = panel.bend > 2.5 && bent_until.contains(panel.lo);
         for (int i = border ? 0 : 1; i < (panel.bend > 4 ? 4 : 1); ++i) {
           cosines.push_back(cosine_of(node_of(panel, i)));
           checked.push_back(panel);
