@@ -22,9 +22,10 @@ class Render(ProgramTest):
         self.scene = self.write("scene.xml", SCENE.encode())
 
     def test_profile_shares_the_time_out(self):
-        found = self.json_of("render", self.scene, "--spp", 1024, "--profile")
+        # A fifth as a rule; of ninety rings the share was once 0.06, of four times as many it is steady.
+        found = self.json_of("render", self.scene, "--spp", 4096, "--profile")
         self.assertGreater(found["timer_rings"], 10)
-        self.assertGreater(found["traversal"], 0.02)  # a fifth as a rule, of some ninety rings
+        self.assertGreater(found["traversal"], 0.1)
         self.assertAlmostEqual(sum(found[k] for k in ("traversal", "sample", "eval", "rest")), 1, places=6)
 
     def test_profile_books_every_integrator(self):

@@ -105,7 +105,7 @@ def test_bad_input(metals):
         metals.sample(WO)
     with pytest.raises(rt.Error, match="no range of rough"):
         metals.sample(WO, alpha=0.3, rough=1)
-    for bad in (0.19, 0.81, np.nan):
+    for bad in (0.19, 0.81, np.nan, np.inf, 1e300):
         with pytest.raises(rt.Error, match="outside of its range"):
             metals.pdf(WO, WO, alpha=bad)
     with pytest.raises(rt.Error, match=r"alpha\[1, 0\]"):

@@ -173,7 +173,8 @@ class FamilySampler:
         columns = [as_floats(parameters[name], name) for name in self.ranges]
         for name, column in zip(self.ranges, columns):
             low, high = self.ranges[name]
-            single = column.astype(np.float32)
+            with np.errstate(over="ignore"):  # what is too large for a float is out of range, too
+                single = column.astype(np.float32)
             bad = ~((single >= np.float32(low)) & (single <= np.float32(high)))
             if np.any(bad):
                 where = tuple(int(i[0]) for i in np.nonzero(bad)) if column.ndim else ()
