@@ -9,7 +9,7 @@
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
-#include "reflectree/simd/lanes.hpp"
+#include "reflectree/math/lanes.hpp"
 
 namespace reflectree {
 namespace {

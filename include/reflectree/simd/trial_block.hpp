@@ -5,7 +5,7 @@
 #include "reflectree/sampler/known/incidence.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
-#include "reflectree/simd/lanes.hpp"
+#include "reflectree/math/lanes.hpp"
 
 namespace reflectree::detail {
 

@@ -2,12 +2,14 @@
 #include "field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <mutex>
 
 #include "reflectree/error.hpp"
 #include "reflectree/math/frame.hpp"
+#include "reflectree/math/lanes.hpp"
 #include "refuse.hpp"
 
 namespace reflectree::detail {
@@ -39,6 +41,31 @@ Domain domain_of(const Field& field, const Coordinates& at) {
   if (!field.parameters.empty())
     domain.scale_x = scale_by(field.law.x, at), domain.scale_y = scale_by(field.law.y, at);
   return domain;
+}
+
+// lift() of points that share their domain, as many side by side as there are lanes: each lane computes what
+// lift() computes, bit for bit.
+void lift_side_by_side(const Field& field, const Domain& domain, std::span<const FieldPoint> points,
+                       std::span<DomainPoint> out) {
+  for (std::size_t first = 0; first < points.size(); first += lane_count) {
+    const std::size_t count = std::min(lane_count, points.size() - first);
+    std::array<std::array<float, lane_count>, 5> in;
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const FieldPoint& point = points[first + std::min(i, count - 1)];
+      const Direction wo = seen_by_domain(field, point.wo);
+      in[0][i] = wo.x, in[1][i] = wo.y, in[2][i] = wo.z, in[3][i] = point.p.x, in[4][i] = point.p.y;
+    }
+    const auto lanes = [&in](std::size_t k) { return Lanes::load(in[k].data()); };
+    const Vec3<Lanes> wo{lanes(0), lanes(1), lanes(2)};
+    const DomainPointT<Lanes> q = lift_point(domain, wo, Vec2<Lanes>{lanes(3), lanes(4)});
+    const ShadingGeometry<Lanes>& g = q.geometry;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto lane = [i](const Vec3<Lanes>& w) { return Direction{w.x[i], w.y[i], w.z[i]}; };
+      out[first + i] = {{lane(g.wo), lane(g.wi), lane(g.wh), g.cos_theta_o[i], g.cos_theta_i[i],
+                         g.cos_theta_h[i], g.cos_theta_d[i]},
+                        q.projected_area[i]};
+    }
+  }
 }
 
 // In the caller's frame; `axis`: from the viewer's frame to it.
@@ -86,7 +113,8 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   const std::size_t images = both_sides ? 2 : 1;
   const std::size_t most = std::min(points.size(), f.traits().concurrent ? block : large_block);
   std::vector<ShadingGeometry<float>> geometry(most * images);
-  std::vector<float> values(geometry.size() * std::size_t(channels)), area(most);
+  std::vector<float> values(geometry.size() * std::size_t(channels));
+  std::vector<DomainPoint> lifted(most);
   std::vector<Parameters> members(family ? geometry.size() : 0);
   const Turn axis{cos(frame.axis), sin(frame.axis)};
   Domain member = domain;
@@ -95,6 +123,7 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
   for (std::size_t begin = 0; begin < points.size(); begin += most) {
     const std::size_t end = std::min(points.size(), begin + most);
     const std::size_t count = end - begin;
+    if (!family) lift_side_by_side(*this, domain, points.subspan(begin, count), lifted);
     for (std::size_t k = 0; k < count; ++k) {
       const FieldPoint& point = points[begin + k];
       if (family) {
@@ -102,11 +131,11 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
           member = domain_of(*this, point.at), member_values = values_of(parameters, point.at);
         last = &point;
         for (std::size_t i = 0; i < images; ++i) members[k * images + i] = member_values;
+        lifted[k] = lift(member, seen_by_domain(*this, point.wo), point.p);
       }
-      const DomainPoint q = lift(member, seen_by_domain(*this, point.wo), point.p);
+      const DomainPoint& q = lifted[k];
       geometry[k * images] =
           frame.isotropic() ? q.geometry : geometry_for_caller(*this, axis, point, q.geometry);
-      area[k] = q.projected_area;
       if (!both_sides) continue;
       ShadingGeometry<float>& mirrored = geometry[k * images + 1] = q.geometry;
       mirrored.wi.y = -mirrored.wi.y, mirrored.wh.y = -mirrored.wh.y;
@@ -130,8 +159,8 @@ void Field::eval(std::span<const FieldPoint> points, std::span<FieldValue> out) 
       return t;
     };
     for (std::size_t k = 0; k < count; ++k) {
-      const float a = target_of(k * images) * area[k];
-      const float b = both_sides ? target_of(k * images + 1) * area[k] : a;
+      const float a = target_of(k * images) * lifted[k].projected_area;
+      const float b = both_sides ? target_of(k * images + 1) * lifted[k].projected_area : a;
       out[begin + k] = {0.5f * (a + b), max(a, b)};
     }
   }

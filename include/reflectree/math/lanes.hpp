@@ -14,8 +14,8 @@
 #include <immintrin.h>
 #endif
 
-#include "reflectree/brdf/shading_geometry.hpp"
-#include "reflectree/simd/plain_vector.hpp"
+#include "reflectree/math/direction.hpp"
+#include "reflectree/math/plain_vector.hpp"
 
 namespace reflectree {
 
@@ -160,7 +160,7 @@ inline Lanes atan2(Lanes y, Lanes x) {
   return each_lane([](float a, float b) { return std::atan2(a, b); }, y, x);
 }
 
-// As in shading_geometry.hpp, with its branch taken lane by lane.
+// As in brdf/shading_geometry.hpp, with its branch taken lane by lane.
 REFLECTREE_INLINE Vec3<Lanes> sum_of_directions(Vec3<Lanes> wo, Vec3<Lanes> wi) {
   const Vec3<Lanes> h = wo + wi, m = wo - wi;
   const Vec3<Lanes> mended = h - (dot(h, m) / dot(m, m)) * m;
