@@ -63,10 +63,22 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   attempt.jumps = find_jumps(field, host, uncounted);
   attempt.albedo = build_albedo(field, options.albedo_error, attempt.jumps, options.seed, host, effort);
   const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, &towers};
-  attempt.exact = build_exact(survey, options, report);
+  const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
+  std::vector<WrongAlbedo> stepped_over;
+  for (int look = 1;; ++look) {
+    attempt.exact = build_exact(survey, options, report);
+    host.stage("judging the albedo by the trees");
+    if (field.f.traits().albedo && !field.family) break;
+    const TreeMarks marks = tree_marks(attempt.exact, apart);
+    stepped_over = judge_by_trees(attempt.exact, marks, apart, options.seed);
+    if (stepped_over.empty() || look == 3 || effort.spent()) break;
+    Field informed = field;
+    informed.marks = &marks;
+    host.stage("integrating the albedo again");
+    attempt.albedo = build_albedo(informed, options.albedo_error, attempt.jumps, options.seed, host, effort);
+  }
   host.progress(0.87f);
   host.stage("cross-examining");
-  const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
   const Viewer brightest_viewer{seen.brightest_wo, seen.brightest_at};
   const FieldPoint brightest =
       field_point(brightest_viewer, field.place_of(brightest_viewer, seen.brightest_wi));
@@ -81,6 +93,9 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
     if (field.frame.isotropic() || met.empty() || !told || round + 1 == rounds) break;
     raise_at(attempt.exact, met, apart);
   }
+  attempt.seen.wrong.insert(attempt.seen.wrong.end(), stepped_over.begin(), stepped_over.end());
+  std::stable_sort(attempt.seen.wrong.begin(), attempt.seen.wrong.end(),
+                   [](const WrongAlbedo& a, const WrongAlbedo& b) { return a.miss > b.miss; });
   attempt.seen.towers = std::move(towers);
   if (attempt.seen.towers.empty() && disagrees(attempt.seen, attempt.albedo))
     attempt.seen.towers = highest_places(attempt.exact);

@@ -2,6 +2,7 @@
 // At the end of a build the result is asked by other means than those that built it.
 #pragma once
 
+#include "build/albedo/judge_by_trees.hpp"
 #include "slab.hpp"
 
 namespace reflectree::detail {
@@ -12,12 +13,6 @@ struct Surprise {
   Direction wi;     // in the viewer's frame
   float ratio;      // of T / albedo to the bound; infinite where the albedo is 0
   Vec2<float> p{};  // the place of wi in the square
-};
-
-// A viewer for whom the table of the albedo is not what cubature finds.
-struct WrongAlbedo {
-  Known known;
-  double table, found, miss;  // miss: relative, beyond what the cubature leaves open
 };
 
 struct CrossExamination {

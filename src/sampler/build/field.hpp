@@ -39,6 +39,8 @@ struct Landmark {
   Vec2<float> size;
 };
 
+struct TreeMarks;
+
 struct Field {
   AnyBrdf f;
   Target target;
@@ -49,6 +51,7 @@ struct Field {
   std::optional<AnyFamily> family = {};  // of which f is a member
   std::vector<KnownParameter> parameters = {};
   ScaleLaw law = {};
+  const TreeMarks* marks = nullptr;  // what trees of this field have met, for the cubature of the albedo
 
   // All that is known of viewers.
   KnownBox whole() const;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "reflectree/math/genz_malik.hpp"
+#include "tree_marks.hpp"
 
 namespace reflectree::detail {
 
@@ -77,6 +78,10 @@ void start(Integral& integral, const Field& field, const IntegralOptions& option
   for (const Landmark& at : field.landmarks(integral.viewer)) {
     if (at.p.y != 0) close_in(at.p, double(at.size.x), double(at.size.y));
     if (abs(at.p.y) < at.size.y) pole = std::min(pole, double(at.size.y));
+  }
+  if (field.marks) {
+    for (const Landmark& at : field.marks->at(integral.viewer))
+      close_in(at.p, double(at.size.x), double(at.size.y));
   }
   if (!options.rim) {
     for (const float side : {1e-6f, -1e-6f}) {
@@ -194,7 +199,8 @@ Integrals integrate(const Field& field, const std::vector<Viewer>& viewers, cons
   Integrals result;
   for (const Integral& integral : integrals) {
     result.values.push_back(integral.value);
-    if (integral.value > 0) result.error = max(result.error, integral.error / integral.value);
+    result.errors.push_back(integral.value > 0 ? integral.error / integral.value : 0);
+    result.error = max(result.error, result.errors.back());
   }
   return result;
 }

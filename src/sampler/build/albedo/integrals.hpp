@@ -19,9 +19,8 @@ struct IntegralOptions {
 };
 
 struct Integrals {
-  std::vector<double> values;
-  double error =
-      0;  // the largest, relative; more than asked for where the limit of regions does not reach it
+  std::vector<double> values, errors;  // errors: relative; more than asked for where regions do not suffice
+  double error = 0;                    // the largest
 };
 
 // Integrates T over the square for every viewer, in their frame; all integrals advance together, a batch per

@@ -34,8 +34,10 @@ class TableBuilder {
         budget_(budget),
         max_regions_(std::size_t(clamp(double(budget) / (15 * double(genz_malik_points)), 400., 40000.))),
         apart_{0, effort.limit},
+        fine_(field.marks != nullptr),
         rim_(!field.frame.isotropic() || field.family) {
     if (!field.frame.isotropic()) cells_x_ = 12, cells_y_ = 6;
+    if (fine_) cells_x_ = 48, cells_y_ = 24;
     std::vector<double> borders = first_borders(field.f.traits());
     for (const ThetaJump& jump : jumps.theta_o) borders.push_back(jump.before), borders.push_back(jump.after);
     std::sort(borders.begin(), borders.end());
@@ -81,15 +83,16 @@ class TableBuilder {
           checked.push_back(panel);
         }
       }
-      std::vector<double> misses =
-          misses_at(now, cosines, {2 * cubature_error(), 7, 5, true, progress, progress});
+      std::vector<double> misses = misses_at(
+          now, cosines, {2 * cubature_error(), fine_ ? 41 : 7, fine_ ? 23 : 5, true, progress, progress});
       // Where they disagree a third and finer cubature decides.
       std::vector<float> doubtful;
       for (std::size_t i = 0; i < cosines.size(); ++i) {
         if (misses[i] > doubted * error_) doubtful.push_back(cosines[i]);
       }
       const std::vector<double> decided =
-          misses_at(now, doubtful, {0.4 * cubature_error(), 24, 12, true, progress, progress});
+          misses_at(now, doubtful,
+                    {0.4 * cubature_error(), fine_ ? 64 : 24, fine_ ? 32 : 12, true, progress, progress});
       double worst = 0;
       std::vector<Panel> missed;
       for (std::size_t i = 0, d = 0; i < cosines.size(); ++i) {
@@ -120,7 +123,8 @@ class TableBuilder {
         }
       }
       rim_ = true;
-      if (error_ <= asked_) cells_x_ = 24, cells_y_ = 12;  // what was deceived once would be so again
+      if (error_ <= asked_ && !fine_)
+        cells_x_ = 24, cells_y_ = 12;  // what was deceived once would be so again
       for (const Panel& p : missed) {
         for (int i = 0; i < 5; ++i) nodes_.erase(node_of(p, i));
       }
@@ -270,7 +274,8 @@ class TableBuilder {
   Effort apart_;  // of the checks: evaluations count what the sampler is made of
   // Lobes that lie askew hide better: anisotropic functions begin with more cells.
   int cells_x_ = 8, cells_y_ = 4;
-  bool rim_;  // close in on the rim: the first integrals were found wrong, or rows must agree
+  const bool fine_;  // trees were grown, and their judge found integrals that stepped over something
+  bool rim_;         // close in on the rim: the first integrals were found wrong, or rows must agree
   double first_ = 0, worst_ = 0, missed_ = 0, noise_ = 0;  // worst: of the integrals, as they estimate it
   std::vector<Panel> open_, closed_;
   std::map<double, double> nodes_;
