@@ -62,8 +62,10 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   Effort uncounted{0, options.max_evaluations};
   attempt.jumps = find_jumps(field, host, uncounted);
   attempt.albedo = build_albedo(field, options.albedo_error, attempt.jumps, options.seed, host, effort);
-  const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, &towers};
-  const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
+  CosineLookup guide = guide_to(attempt.albedo);
+  const CosineLookup* const guided = field.frame.isotropic() && !field.family ? &guide : nullptr;
+  const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, &towers, guided};
+  const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps, nullptr, guided};
   std::vector<WrongAlbedo> stepped_over;
   for (int look = 1;; ++look) {
     attempt.exact = build_exact(survey, options, report);
@@ -76,6 +78,7 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
     informed.marks = &marks;
     host.stage("integrating the albedo again");
     attempt.albedo = build_albedo(informed, options.albedo_error, attempt.jumps, options.seed, host, effort);
+    guide = guide_to(attempt.albedo);
   }
   host.progress(0.87f);
   host.stage("cross-examining");

@@ -97,8 +97,11 @@ struct Survey {
   Effort& effort;
   const Jumps* jumps = nullptr;
   std::vector<FieldPoint>* towers = nullptr;  // where the attack met values far above a bound are noted here
+  const CosineLookup* guide = nullptr;        // of an isotropic function's albedo
 
-  float albedo_at(const Viewer& viewer) const { return albedo_of(field, albedo, viewer); }
+  float albedo_at(const Viewer& viewer) const {
+    return guide ? reflectree::albedo_at(albedo, *guide, viewer.wo.z) : albedo_of(field, albedo, viewer);
+  }
   // So close to a jump that rounding decides on which side wo is.
   bool at_jump(Direction wo) const;
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {

@@ -102,12 +102,31 @@ float padded_value(const AlbedoTable& table, const std::vector<AlbedoSegment>& s
 
 }  // namespace
 
-float albedo_at(const AlbedoTable& table, float c) {
+namespace {
+
+// Along the line after node i.
+float on_line(const AlbedoTable& table, std::size_t i, float c) {
   const auto& x = table.cos_theta_o;
-  if (is_outside(x, c)) return 0;
-  const std::size_t i = node_before(x, c);
   const float t = (c - x[i]) / (x[i + 1] - x[i]);
   return linear_mix(t, table.albedo[i], table.albedo[i + 1]);
+}
+
+}  // namespace
+
+float albedo_at(const AlbedoTable& table, float c) {
+  const auto& x = table.cos_theta_o;
+  return is_outside(x, c) ? 0 : on_line(table, node_before(x, c), c);
+}
+
+CosineLookup guide_to(const AlbedoTable& table) {
+  std::vector<float> borders = table.cos_theta_o;
+  borders.push_back(2);
+  return CosineLookup(std::move(borders));
+}
+
+float albedo_at(const AlbedoTable& table, const CosineLookup& guide, float c) {
+  const auto& x = table.cos_theta_o;
+  return is_outside(x, c) ? 0 : on_line(table, std::min(guide(c), x.size() - 2), c);
 }
 
 float albedo_at(const AlbedoTable& table, float c, float phi_o) {

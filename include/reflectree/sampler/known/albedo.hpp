@@ -38,6 +38,9 @@ struct AlbedoTable {
 
 // a(wo) by linear interpolation; 0 outside the table.
 float albedo_at(const AlbedoTable& table, float cos_theta_o);
+// The same where many are asked for: a guide to the nodes of the table, made once.
+CosineLookup guide_to(const AlbedoTable& table);
+float albedo_at(const AlbedoTable& table, const CosineLookup& guide, float cos_theta_o);
 float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o);
 float albedo_at(const AlbedoTable& table, float cos_theta_o, float phi_o, const Coordinates& at);
 // Throws Error unless the nodes ascend over the hemisphere and every value is a number that is not negative.
