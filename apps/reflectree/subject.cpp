@@ -68,8 +68,8 @@ void add_build_choices(CLI::App& command, BuildChoices& choices) {
         ->type_name(type)
         ->group("Options of building, for a material");
   };
-  option("--trials", choices.trials, "N", "Expected trials of exact mode, for every wo; 1.02 to 64")
-      ->check(CLI::Range(1.02, 64.).description(""));
+  option("--trials", choices.trials, "N", "Expected trials of exact mode, for every wo; 1.02 to 16")
+      ->check(CLI::Range(1.02, 16.).description(""));
   option("--variance", choices.variance, "V",
          "Relative variance of the weight in one-shot mode; 0.0001 to 10")
       ->check(CLI::Range(1e-4, 10.).description(""));

@@ -10,6 +10,7 @@
 #include "canonical.hpp"
 #include "check_options.hpp"
 #include "findings.hpp"
+#include "judge_density.hpp"
 #include "jumps.hpp"
 #include "passes.hpp"
 #include "reflectree/error.hpp"
@@ -52,7 +53,8 @@ struct Attempt {
   CrossExamination seen;
 };
 
-Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOptions& options,
+// Patient: lobes that the attack meets are grown around, rather than left to be followed first.
+Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOptions& options, bool patient,
                       Effort& effort, const Host& host, BuildReport& report) {
   Attempt attempt;
   std::vector<FieldPoint> towers;
@@ -64,7 +66,8 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   attempt.albedo = build_albedo(field, options.albedo_error, attempt.jumps, options.seed, host, effort);
   CosineLookup guide = guide_to(attempt.albedo);
   const CosineLookup* const guided = field.frame.isotropic() && !field.family ? &guide : nullptr;
-  const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, &towers, guided};
+  const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, patient ? nullptr : &towers,
+                      guided};
   const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps, nullptr, guided};
   std::vector<WrongAlbedo> stepped_over;
   for (int look = 1;; ++look) {
@@ -164,6 +167,7 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
   constexpr int max_attempts = 3;
   std::uint64_t evaluations = 0;
   std::vector<Ridge> ridges;
+  bool patient = false;
   for (int n = 1;; ++n) {
     // A quarter is left for one-shot trees.
     Effort effort{0, options.max_evaluations / 4 * 3};
@@ -173,12 +177,15 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
         options.domain ? DomainChoice{*options.domain} : choose_domain(subject, options, seen, ridges, host);
     if (!seen.frame.isotropic()) choice.domain.symmetry = Symmetry::none;
     const Field field = field_of(subject, seen, choice, ridges);
-    Attempt attempt = attempt_exact(field, seen, options, effort, host, data.report);
-    if (n < max_attempts && evaluations < options.max_evaluations && !effort.spent() &&
-        disagrees(attempt.seen, attempt.albedo)) {
-      evaluations += effort.evaluations;
-      if (add_ridges(ridges, field, attempt.seen)) {
-        seen = examine(subject, options, ridges);
+    Attempt attempt = attempt_exact(field, seen, options, patient, effort, host, data.report);
+    // Whether half of the budget is left for another attempt, one-shot trees of this one included.
+    const auto half_is_left = [&] { return evaluations + effort.evaluations < options.max_evaluations / 2; };
+    if (evaluations < options.max_evaluations && !effort.spent() && disagrees(attempt.seen, attempt.albedo)) {
+      const bool follow = n < max_attempts && add_ridges(ridges, field, attempt.seen);
+      if (follow || (!patient && half_is_left())) {
+        evaluations += effort.evaluations;
+        if (follow) seen = examine(subject, options, ridges);
+        patient = patient || !follow;
         continue;
       }
     }
@@ -188,6 +195,7 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
       refuse_unfit_domain(attempt.albedo, field_of(subject, seen, own, ridges), host);
     }
     refuse_disagreement(attempt.seen, attempt.albedo, field, effort.spent());
+    refuse_hopeless(attempt.exact, field, effort.spent());
     state_misses(attempt.seen, attempt.albedo);
     const bool spent = effort.spent();
     effort.limit = options.max_evaluations;
@@ -196,6 +204,19 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
     // Bounds are a density, too: where the effort did not reach for a better one, they serve.
     if (effort.spent() && worst_variance(attempt.one_shot) > options.expected_trials - 1)
       attempt.one_shot = attempt.exact;
+    // A lobe that its trees stepped over costs variance, not truth: it is followed, or told of.
+    Effort uncounted;
+    const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
+    const DensityJudgement density = judge_density(attempt.one_shot, attempt.exact, options.seed, apart);
+    if (much_more(density.variance, options) && n < max_attempts && half_is_left()) {
+      CrossExamination met;
+      met.towers = density.towers;
+      if (add_ridges(ridges, field, met)) {
+        evaluations += effort.evaluations;
+        seen = examine(subject, options, ridges);
+        continue;
+      }
+    }
     data.frame = seen.frame, data.domain = choice.domain;
     data.parameters = subject.parameters, data.law = choice.law;
     data.albedo = attempt.albedo;
@@ -205,8 +226,8 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
     for (const Slab& slab : attempt.one_shot) data.one_shot.push_back(density_tree(slab));
     data.report.one_shot_variance = median_variance(attempt.one_shot);
     data.report.evaluations = evaluations + effort.evaluations;
-    data.report.notes = notes_on(attempt.exact, attempt.one_shot, attempt.albedo, subject.parameters, options,
-                                 spent || effort.spent());
+    data.report.notes = notes_on(attempt.exact, attempt.one_shot, attempt.albedo, density, subject.parameters,
+                                 options, spent || effort.spent());
     break;
   }
   data.probes =

@@ -30,6 +30,24 @@ std::pair<const Slab*, double> worst_of(const std::vector<Slab>& slabs, const Wh
   return worst;
 }
 
+// The known coordinates of a slab, in words.
+std::string range_of(const Slab& slab, const std::vector<KnownParameter>& parameters) {
+  std::string where = text("theta_o %.4g to %.4g degrees", double(slab.box.lo[0]) * degrees,
+                           double(slab.box.hi[0]) * degrees);
+  for (int axis = 1; axis < slab.box.axes; ++axis) {
+    const auto k = std::size_t(slab.box.slot[std::size_t(axis)]);
+    if (k == 1) {
+      where +=
+          text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
+      continue;
+    }
+    const KnownParameter& p = parameters[k - 2];
+    where += text(", %s %.4g to %.4g", p.range.name.c_str(), double(value_of(p, slab.box.lo[k])),
+                  double(value_of(p, slab.box.hi[k])));
+  }
+  return where;
+}
+
 }  // namespace
 
 bool add_ridges(std::vector<Ridge>& ridges, const Field& field, const CrossExamination& seen) {
@@ -117,45 +135,47 @@ void refuse_disagreement(const CrossExamination& seen, const AlbedoTable& albedo
   }
 }
 
+void refuse_hopeless(const std::vector<Slab>& exact, const Field& field, bool spent) {
+  // Exact mode gives up after 256 trials: of 20 on average 2 directions in a million would be lost.
+  constexpr double most = 20;
+  const auto [dear, trials] = worst_of(exact, [](const Slab& s) { return double(total(s, &Leaf::cost)); });
+  if (!dear || trials <= most) return;
+  throw Error(
+      text("exact mode would take %.3g trials on average at %s, and gives up after 256", trials,
+           range_of(*dear, field.parameters).c_str()),
+      field.f.traits().name,
+      spent ? "the budget is used up: sample sharp lobes that move apart as functions of their own, raise "
+              "max_evaluations, or smooth the function"
+            : "sample sharp lobes that move apart as functions of their own, or smooth the function");
+}
+
+bool much_more(double variance, const BuildOptions& options) {
+  return variance > 10 * double(options.one_shot_variance);
+}
+
 std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
-                                  const AlbedoTable& albedo, const std::vector<KnownParameter>& parameters,
-                                  const BuildOptions& options, bool spent) {
+                                  const AlbedoTable& albedo, const DensityJudgement& density,
+                                  const std::vector<KnownParameter>& parameters, const BuildOptions& options,
+                                  bool spent) {
   std::vector<std::string> notes;
   const bool black = std::all_of(albedo.albedo.begin(), albedo.albedo.end(), [](float a) { return a == 0; });
   if (black) notes.push_back("the function is 0 wherever it was looked at: there is no sample for any wo");
-  const auto range = [&parameters](const Slab& slab) {
-    std::string where = text("theta_o %.4g to %.4g degrees", double(slab.box.lo[0]) * degrees,
-                             double(slab.box.hi[0]) * degrees);
-    for (int axis = 1; axis < slab.box.axes; ++axis) {
-      const auto k = std::size_t(slab.box.slot[std::size_t(axis)]);
-      if (k == 1) {
-        where +=
-            text(", phi_o %.4g to %.4g", double(slab.box.lo[1]) * degrees, double(slab.box.hi[1]) * degrees);
-        continue;
-      }
-      const KnownParameter& p = parameters[k - 2];
-      where += text(", %s %.4g to %.4g", p.range.name.c_str(), double(value_of(p, slab.box.lo[k])),
-                    double(value_of(p, slab.box.hi[k])));
-    }
-    return where;
-  };
   const std::string end = spent ? text("the budget of %.3g evaluations is used up: raise max_evaluations",
                                        double(options.max_evaluations))
                                 : "leaves cannot get smaller: the function is too steep there";
   const auto [dear, trials] = worst_of(exact, [](const Slab& s) { return double(total(s, &Leaf::cost)); });
   if (dear && trials > 1.0002 * double(options.expected_trials)) {
     notes.push_back(text("exact mode takes %.3g trials on average at %s, where %.3g were asked for; ", trials,
-                         range(*dear).c_str(), double(options.expected_trials)) +
+                         range_of(*dear, parameters).c_str(), double(options.expected_trials)) +
                     end);
   }
-  const auto [noisy, variance] = worst_of(one_shot, [](const Slab& slab) {
-    const auto ideal = double(total(slab, &Leaf::ideal));
-    return ideal > 0 ? sqr(double(total(slab, &Leaf::cost)) / ideal) - 1 : 0.;
-  });
-  if (noisy && variance > 10 * double(options.one_shot_variance)) {
+  // As the trees have it, or as draws from the exact ones show it.
+  auto [noisy, variance] = worst_of(one_shot, [](const Slab& slab) { return total_of(slab).variance(); });
+  if (density.variance > variance) noisy = density.worst, variance = density.variance;
+  if (noisy && much_more(variance, options)) {
     notes.push_back(
         text("one-shot weights have a relative variance of %.2g at %s, where %.2g was asked for; ", variance,
-             range(*noisy).c_str(), double(options.one_shot_variance)) +
+             range_of(*noisy, parameters).c_str(), double(options.one_shot_variance)) +
         end);
   }
   if (albedo.relative_error > 1.001f * options.albedo_error) {
