@@ -37,9 +37,9 @@ std::vector<Known> teeth(const AlbedoTable& table) {
     std::sort(bends.begin(), bends.end());
     std::size_t taken = 0;
     for (const auto& [bend, known] : bends) {
-      const bool apart = std::all_of(list.end() - std::ptrdiff_t(taken), list.end(), [&](const Known& k) {
-        return k[1] != known[1] || abs(k[0] - known[0]) > distance;
-      });
+      const bool apart = std::all_of(
+          list.end() - std::ptrdiff_t(taken), list.end(),
+          [&, known = known](const Known& k) { return k[1] != known[1] || abs(k[0] - known[0]) > distance; });
       if (apart && taken < most) list.push_back(known), ++taken;
     }
   }
