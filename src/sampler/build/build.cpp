@@ -69,25 +69,32 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
   const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps, patient ? nullptr : &towers,
                       guided};
   const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps, nullptr, guided};
+  const Viewer brightest_viewer{seen.brightest_wo, seen.brightest_at};
+  const FieldPoint brightest =
+      field_point(brightest_viewer, field.place_of(brightest_viewer, seen.brightest_wi));
   std::vector<WrongAlbedo> stepped_over;
+  std::uint64_t before = 0;
   for (int look = 1;; ++look) {
     attempt.exact = build_exact(survey, options, report);
     host.stage("judging the albedo by the trees");
     if (field.f.traits().albedo && !field.family) break;
     const TreeMarks marks = tree_marks(attempt.exact, apart);
     stepped_over = judge_by_trees(attempt.exact, marks, apart, options.seed);
-    if (stepped_over.empty() || look == 3 || effort.spent()) break;
+    if (stepped_over.empty() || look == 2 || effort.spent()) break;
+    // Lobes that can be followed are, before their albedo is integrated with the trees' help.
+    if (!patient && disagrees(cross_examine(attempt.exact, apart, brightest, options.seed), attempt.albedo))
+      break;
     Field informed = field;
     informed.marks = &marks;
+    before = effort.evaluations,
+    effort.evaluations = 0;  // what was wrong takes nothing from what replaces it
     host.stage("integrating the albedo again");
     attempt.albedo = build_albedo(informed, options.albedo_error, attempt.jumps, options.seed, host, effort);
     guide = guide_to(attempt.albedo);
   }
+  effort.evaluations += before;
   host.progress(0.87f);
   host.stage("cross-examining");
-  const Viewer brightest_viewer{seen.brightest_wo, seen.brightest_at};
-  const FieldPoint brightest =
-      field_point(brightest_viewer, field.place_of(brightest_viewer, seen.brightest_wi));
   // Slivers of steps, where no local search leads: what was met is mended, and all is asked again.
   constexpr std::uint64_t rounds = 24;
   for (std::uint64_t round = 0;; ++round) {
