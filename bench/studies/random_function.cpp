@@ -115,14 +115,13 @@ RandomFunction random_function(std::uint64_t seed) {
                                : RandomLobe::Place::back;
     lobe.disc = uniform(0, 1) < 0.2;
     lobe.width = float(spread(lobe.disc ? 0.02 : 0.004, 0.6));
-    // Whole on its side of the plane of incidence, unless it is wide.
+    // What stands still is whole, on its side of the plane of incidence.
     lobe.theta = float(uniform(0.1, 1.45)), lobe.phi = float(uniform(0.2, 2.9));
     const double clear = std::sin(double(lobe.theta)) * std::sin(double(lobe.phi));
     if (lobe.place == RandomLobe::Place::fixed)
       lobe.width = float(std::min(double(lobe.width), 0.25 * clear));
-    const double share = spread(1e-3, 3);  // of the ground's albedo, at its brightest
-    const double area = (lobe.disc ? 1. : 1.) * double(lobe.width) * double(lobe.width);
-    lobe.height = float(share * double(f.ground) / area);
+    const double share = spread(1e-3, 3);  // of the ground's albedo, where the lobe is at the normal
+    lobe.height = float(share * double(f.ground) / sqr(double(lobe.width)));
     f.lobes.push_back(lobe);
   }
   return f;

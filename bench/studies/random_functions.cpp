@@ -133,12 +133,12 @@ Row judge(std::uint64_t seed, double limit, int samples, double planted, const H
 
 constexpr const char* preface = R"(# Functions by seeds
 
-Made by `build/bin/study_random_functions > docs/results/random-functions.md`, on two cores. Each function is a matt ground
-with one to four lobes, bumps and discs of 0.004 to 0.6 radians, which stand still or go with the mirror direction or with
-the viewer; together 0.1 % to 12 times the ground's albedo. That albedo is known to ten digits. Each is built with the
-default options. Judged are the table of the albedo at every node and between, and, for six viewers, what each lobe has
-of the directions of both modes (*largest z*: in standard errors, 6 are allowed). *Stated*: the relative error that the
-table states, *albedo's miss*: the true one. Functions that are right without a word have no row.
+Made by `study_random_functions`. Each function is a matt ground with one to four lobes, bumps and discs of 0.004 to 0.6
+radians, which stand still (two mirror images) or go with the mirror direction or with the viewer; each has 0.1 % to 6
+times the ground's albedo. That albedo is known to six digits. Each function is built with the default options. Judged are
+the table of the albedo at every node and between, and, for six viewers, what each lobe has of the directions of both
+modes (*largest z*: in standard errors, 6 are allowed). *Stated*: the relative error that the table states, *albedo's
+miss*: the true one. Functions that are right without a word have no row unless `--all` is given.
 
 )";
 

@@ -212,7 +212,7 @@ TEST(Options, OutOfRangeAreRefusedByName) {
     return refusal(f, options);
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const float bad : {1.f, 0.f, -2.f, 1e9f, nan}) {
+  for (const float bad : {1.f, 0.f, -2.f, 16.1f, 64.f, 1e9f, nan}) {
     EXPECT_TRUE(has(with([&](BuildOptions& o) { o.expected_trials = bad; }), "expected_trials is")) << bad;
   }
   for (const float bad : {0.f, -1.f, nan}) {

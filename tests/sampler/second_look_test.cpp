@@ -89,6 +89,36 @@ TEST(Needles, AtTheNormal) {
   }
 }
 
+// The attack met them at the pole of their own domain, a landmark: there was nothing to follow, and they were refused.
+TEST(Needles, AboutTheMirrorDirectionAreGrownAround) {
+  const auto f = [](Direction wo, Direction wi) {
+    const Direction d = wi - Direction{-wo.x, -wo.y, wo.z};
+    const float d2 = dot(d, d);
+    return 0.0259f + 0.235f * std::exp(-d2 / sqr(0.0108f)) + 0.688f * std::exp(-d2 / sqr(0.00993f));
+  };
+  const SamplerData data = build(AnyBrdf(f));
+  EXPECT_LE(data.report.expected_trials, 1.2501f);
+  EXPECT_TRUE(data.report.notes.empty());
+}
+
+// Exact mode gives up after 256 trials: bounds so loose that directions would be lost are no sampler.
+TEST(Needles, ThatMoveApartAreRefusedWhereTrialsRunOut) {
+  const auto f = [](Direction wo, Direction wi) {
+    const Direction d = wi - Direction{-wo.x, -wo.y, wo.z}, e = wi - wo;
+    const float w2 = sqr(0.0044f);
+    return 0.1f + 0.03f / w2 * (std::exp(-dot(d, d) / w2) + std::exp(-dot(e, e) / w2));
+  };
+  BuildOptions options;
+  options.max_evaluations = 1'000'000;
+  try {
+    ADD_FAILURE() << "built, with " << build(AnyBrdf(f), options).report.expected_trials << " trials";
+  } catch (const Error& e) {
+    const std::string words = e.what();
+    EXPECT_NE(words.find("gives up after 256"), std::string::npos) << words;
+    EXPECT_NE(words.find("max_evaluations"), std::string::npos) << words;
+  }
+}
+
 // A lobe that no affordable grid resolves is refused, with a place where it was seen.
 TEST(Needles, AtRandomPlacesAreRefused) {
   // Three hundred needles that jump about with theta_o: no two viewers share one.

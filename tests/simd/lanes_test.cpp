@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "reflectree/brdf/models/all.hpp"
+#include "reflectree/math/lanes.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
-#include "reflectree/math/lanes.hpp"
 
 namespace reflectree {
 namespace {

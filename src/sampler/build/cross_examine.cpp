@@ -5,11 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "bound_draws.hpp"
 #include "build/albedo/integrals.hpp"
 #include "build/albedo/panels.hpp"
 #include "canonical.hpp"
-#include "reflectree/math/random.hpp"
-#include "reflectree/sampler/square/packed_leaf.hpp"
 #include "viewer_windows.hpp"
 
 namespace reflectree::detail {
@@ -66,22 +65,14 @@ std::vector<FieldPoint> probes(const Field& field, std::size_t count, Pcg32& u) 
 void draw_from_bounds(const Slab& slab, std::size_t count, const Domain& domain, Pcg32& u,
                       std::vector<FieldPoint>& points, std::vector<Known>& known,
                       std::vector<float>& bounds) {
-  const std::vector<std::uint32_t> order = leaves_in_order(slab);
-  std::vector<double> upper;
-  double sum = 0;
-  for (const std::uint32_t i : order) upper.push_back(sum += double(slab.nodes[i].leaf.cost));
+  const Urn urn = urn_of(slab);
   for (std::size_t k = 0; k < count; ++k) {
-    const double at = sum * to_unit_double(u());
-    const auto found = std::min(std::upper_bound(upper.begin(), upper.end(), at), upper.end() - 1);
-    const Leaf& leaf = slab.nodes[order[std::size_t(found - upper.begin())]].leaf;
-    const Box box = box_of(leaf.cell, domain);
-    const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
-                        box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
+    const BoundDraw drawn = draw(urn, domain, u);
     Shares share{};
     for (int axis = 0; axis < slab.box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
     known.push_back(slab.box.at(share));
-    points.push_back(field_point(viewer_at(known.back()), p));
-    bounds.push_back(leaf.height * shape(leaf, box, p));
+    points.push_back(field_point(viewer_at(known.back()), drawn.p));
+    bounds.push_back(drawn.bound);
   }
 }
 

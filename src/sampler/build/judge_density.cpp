@@ -4,31 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bound_draws.hpp"
 #include "canonical.hpp"
-#include "reflectree/math/random.hpp"
-#include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree::detail {
-
-namespace {
-
-// A tree's leaves, to be drawn from in proportion to the volumes under their bounds.
-struct Urn {
-  std::vector<const Leaf*> leaves;
-  std::vector<double> upper;
-  double volume() const { return upper.empty() ? 0 : upper.back(); }
-};
-
-Urn urn_of(const Slab& slab) {
-  Urn urn;
-  for (const std::uint32_t i : leaves_in_order(slab)) {
-    urn.leaves.push_back(&slab.nodes[i].leaf);
-    urn.upper.push_back(urn.volume() + double(slab.nodes[i].leaf.cost));
-  }
-  return urn;
-}
-
-}  // namespace
 
 DensityJudgement judge_density(const std::vector<Slab>& one_shot, const std::vector<Slab>& exact,
                                std::uint64_t seed, const Survey& survey) {
@@ -50,15 +29,9 @@ DensityJudgement judge_density(const std::vector<Slab>& one_shot, const std::vec
       for (int axis = 0; axis < slab.box.axes; ++axis) share[std::size_t(axis)] = to_unit_float(u());
       const Viewer viewer = viewer_at(slab.box.at(share));
       const Urn& urn = urns[slab_index(partition, viewer, whole)];
-      const auto found =
-          std::upper_bound(urn.upper.begin(), urn.upper.end(), urn.volume() * to_unit_double(u()));
-      const auto at = std::min(std::size_t(found - urn.upper.begin()), urn.leaves.size() - 1);
-      const Leaf& leaf = *urn.leaves[at];
-      const Box box = box_of(leaf.cell, domain);
-      const Vec2<float> p{box.x0 + box.width * sample_linear(leaf.slope_x, to_unit_float(u())),
-                          box.y0 + box.height * sample_linear(leaf.slope_y, to_unit_float(u()))};
-      points.push_back(field_point(viewer, p));
-      shares.push_back(float(urn.volume() / double(draws)) / (leaf.height * shape(leaf, box, p)));
+      const BoundDraw drawn = draw(urn, domain, u);
+      points.push_back(field_point(viewer, drawn.p));
+      shares.push_back(float(urn.volume() / double(draws)) / drawn.bound);
     }
   }
   std::vector<FieldValue> values(points.size());
