@@ -52,9 +52,15 @@ Output output(const reflectree_sampler& s, std::size_t n, const float* wo, float
   return {channels, wi, pdf, weight};
 }
 
-// draw(directions, samples, first) of every block.
-template <class Draw>
-void sample_blocks(std::size_t n, const float* wo, const Output& out, const Draw& draw) {
+// draw(directions, samples, first) of every block. A single viewer goes through one(wo): the lanes of a block
+// cost a renderer that asks for one direction at a time three times as much.
+template <class One, class Draw>
+void sample_blocks(std::size_t n, const float* wo, const Output& out, const One& one, const Draw& draw) {
+  if (n == 1) {
+    const std::optional<DirectionSample<Spectrum>> drawn = one(direction_at(wo, 0));
+    out.store(0, drawn ? *drawn : DirectionSample<Spectrum>{{}, 0, Spectrum(int(out.channels)), 0});
+    return;
+  }
   std::array<Direction, block_size> directions;
   std::vector<DirectionSample<Spectrum>> samples(std::min(n, block_size));
   in_blocks(n, [&](std::size_t first, std::size_t count) {
@@ -74,9 +80,9 @@ void sample_by_bits(const reflectree_sampler& s, const S& sampler, std::size_t n
   if (!bits) refuse(where, "bits is null", "pass reflectree_pcg32_next and a reflectree_pcg32");
   if (bits == reflectree_pcg32_next) needed(state, where, "state");
   with_bits(bits, state, [&](auto& u) {
-    sample_blocks(n, wo, out, [&](auto directions, auto samples, std::size_t) {
-      sample_batch(sampler, directions, u, samples);
-    });
+    sample_blocks(
+        n, wo, out, [&](Direction w) { return sampler.sample(w, u); },
+        [&](auto directions, auto samples, std::size_t) { sample_batch(sampler, directions, u, samples); });
   });
 }
 
@@ -127,12 +133,14 @@ reflectree_status reflectree_sample_uniforms(const reflectree_sampler* s, size_t
     const Output out = output(checked(s, where, "s"), n, wo, wi, pdf, weight, where);
     needed_for(n, u, where, "u");
     std::array<Vec2<double>, block_size> points;
-    sample_blocks(n, wo, out, [&](auto directions, auto samples, std::size_t first) {
-      for (std::size_t k = 0; k < directions.size(); ++k)
-        points[k] = {u[2 * (first + k)], u[2 * (first + k) + 1]};
-      sample_batch(s->sampler.one_shot, directions,
-                   std::span<const Vec2<double>>(points.data(), directions.size()), samples);
-    });
+    sample_blocks(
+        n, wo, out, [&](Direction w) { return s->sampler.one_shot.sample(w, u[0], u[1]); },
+        [&](auto directions, auto samples, std::size_t first) {
+          for (std::size_t k = 0; k < directions.size(); ++k)
+            points[k] = {u[2 * (first + k)], u[2 * (first + k) + 1]};
+          sample_batch(s->sampler.one_shot, directions,
+                       std::span<const Vec2<double>>(points.data(), directions.size()), samples);
+        });
   });
 }
 

@@ -85,6 +85,40 @@ TEST(CInterface, GivesTheBitsOfTheSamplers) {
   reflectree_function_free(f), reflectree_sampler_free(s);
 }
 
+// One viewer per call: the bits of `sample`, and "no sample" as zeros.
+TEST(CInterface, DrawsOneByOneAsTheSamplersDo) {
+  const auto ours = make_sampler(dust);
+  reflectree_function* f;
+  reflectree_sampler* s;
+  ASSERT_EQ(reflectree_function_callback("lambda", 1, REFLECTREE_CONCURRENT, dust_in_c, nullptr, nullptr, &f),
+            REFLECTREE_OK);
+  ASSERT_EQ(reflectree_build(f, nullptr, &s), REFLECTREE_OK) << reflectree_last_error();
+  Pcg32 u(9, 2);
+  reflectree_pcg32 random;
+  reflectree_pcg32_seed(&random, 9, 2);
+  float wi[3], pdf, weight;
+  const auto expect = [&](const auto& sample, reflectree_status status) {
+    ASSERT_EQ(status, REFLECTREE_OK);
+    ASSERT_EQ(sample ? sample->wi : Direction{}, (Direction{wi[0], wi[1], wi[2]}));
+    ASSERT_EQ(sample ? sample->pdf : 0, pdf);
+    ASSERT_EQ(sample ? channel_value(sample->weight, 0) : 0, weight);
+  };
+  std::vector<Direction> wo = viewers(1000);
+  wo.push_back({0, 0.6f, -0.8f});  // from below
+  for (const Direction w : wo) {
+    const float known[3] = {w.x, w.y, w.z};
+    const auto exact = ours.exact.sample(w, u);
+    expect(exact, reflectree_sample_exact(s, 1, known, reflectree_pcg32_next, &random, wi, &pdf, &weight));
+    const auto alias = ours.one_shot.sample(w, u);
+    expect(alias, reflectree_sample_one_shot(s, 1, known, reflectree_pcg32_next, &random, wi, &pdf, &weight));
+    const double points[2] = {to_unit_double(u()), to_unit_double(u())};
+    reflectree_pcg32_next(&random), reflectree_pcg32_next(&random);
+    const auto descended = ours.one_shot.sample(w, points[0], points[1]);
+    expect(descended, reflectree_sample_uniforms(s, 1, known, points, wi, &pdf, &weight));
+  }
+  reflectree_function_free(f), reflectree_sampler_free(s);
+}
+
 int throwing(void* user, size_t, const float*, const float*, float*) {
   if (user) throw std::runtime_error("thrown by a callback");
   throw 5;
