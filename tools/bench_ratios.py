@@ -20,7 +20,7 @@ LIMITS = {"exact_batch/100": 4.5, "one_shot_alias_batch/100": 3.5, "one_shot_mon
 
 
 def medians(arguments: argparse.Namespace) -> dict[str, float]:
-    """Nanoseconds a direction of every benchmark."""
+    """Nanoseconds per direction of every benchmark."""
     command = [
         str(arguments.bench),
         "--benchmark_format=json",

@@ -54,7 +54,7 @@ def notch(outer, depth, above, below, bevel, steps):
 
 
 def ball():
-    """Of radius 1 about the origin; open above 50 degrees, down to radius .7, where a smaller ball fits in."""
+    """Of radius 1 about the origin; open above 50 degrees, down to radius 0.7, where a smaller ball fits in."""
     bevel, edge = .035, 50
     rim = edge - math.degrees(math.asin(bevel / (1 - bevel)))
     high, low, groove = notch(1, .07, 4, -2, .014, 4)
@@ -68,7 +68,7 @@ def ball():
 
 
 def foot():
-    """A turned foot, .34 high, hollowed for a ball of radius 1 that stands in it."""
+    """A turned foot, 0.34 high, hollowed for a ball of radius 1 that stands in it."""
     return [
         *arc((.4, .3), .04, 150, -30, 10),  # the bead on which the ball lies
         *arc((.4 + .16 * math.cos(math.radians(-30)), .3 + .16 * math.sin(math.radians(-30))), .12, 150, 270, 12,

@@ -40,8 +40,8 @@ struct Context {
 
   // Where files are looked for; -v tells where they were found.
   FilePlaces places() const;
-  // Where a file or folder is: as named, or in the folder of measured data. The name itself where it is
-  // nowhere.
+  // Where a file or folder is: as named, or in the folder of measured data. The name itself
+  // where it is nowhere.
   std::string locate(const std::string& path) const { return places().find(path); }
 
   // The program's threads, progress shown under `label`, and Ctrl-C.

@@ -173,7 +173,7 @@ DirectionPairs from_angle_lists(const PairWords& words) {
 constexpr std::array<std::string_view, 6> vector_columns{"wo_x", "wo_y", "wo_z", "wi_x", "wi_y", "wi_z"};
 constexpr std::array<std::string_view, 3> angle_columns{"theta_o_deg", "theta_i_deg", "phi_deg"};
 
-// Where a line's numbers stand; `width` fields a line.
+// Where a line's numbers stand; `width` fields per line.
 struct Layout {
   std::vector<std::size_t> columns;
   std::size_t width = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nanoseconds a direction, each beside the floor: polar cosine-hemisphere sampling with the same generator in
+// Nanoseconds per direction, each beside the floor: polar cosine-hemisphere sampling with the same generator in
 // the same run. wo comes from a pool of 4096 cosine-distributed directions, a new one for every sample;
 // evaluation and weight are included. Ratios are printed by tools/bench_ratios.py.
 #include <benchmark/benchmark.h>

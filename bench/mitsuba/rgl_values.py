@@ -5,9 +5,9 @@
     REFLECTREE_DATA=... bench/mitsuba/rgl_values.py [--reflectree build/bin/reflectree] [--pairs 3200]
 
 Half of the pairs lie near the mirror direction. Mitsuba's values of f cos are cut at 0, as ours are. A value
-differs where it is more than half a percent off; below .001 sr^-1, of .001. Mitsuba is the wheel of the package
-index, put into a virtual environment (--venv) if it is not there. Exits with 1 where a value differs, 3 where
-Mitsuba cannot be had.
+differs where it is more than half a percent off; below 0.001 sr^-1, of 0.001. Mitsuba is the wheel of the
+package index, put into a virtual environment (--venv) if it is not there. Exits with 1 where a value differs,
+3 where Mitsuba cannot be had.
 """
 
 import argparse

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders scenes with Mitsuba's scalar_rgb: a line of JSON each, paths, samples and seeds in, pixels out.
 
-For words.py and others, which run it in an environment that has Mitsuba. "path": a scene without an integrator gets a path
-tracer."""
+For words.py and others, which run it in an environment that has Mitsuba. "path": a scene without an integrator
+gets a path tracer."""
 import json
 import sys
 

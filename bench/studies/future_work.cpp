@@ -109,7 +109,7 @@ struct WaveletDisk {
 // Means of f over the cells of the square, 0 off the disk; on it at least 1e-3 of their mean, as the wavelet
 // peer has it: what the transform takes for nothing would weigh too much where it is drawn.
 std::vector<float> disk_cells(const AnyBrdf& f, Direction wo, int size) {
-  constexpr int points = 3;  // a side, in a cell
+  constexpr int points = 3;  // per side of a cell
   std::vector<float> cells;
   std::vector<std::size_t> lit;
   double all = 0;

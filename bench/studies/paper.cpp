@@ -81,8 +81,8 @@ bool show_law(const AnyBrdf& f, const std::string& folder) {
   return all;
 }
 
-// Between two tabulated angles: 45 deg is the middle of a range where `thetas` is odd, an edge where it is
-// even.
+// Between two tabulated angles: 45 deg is the middle of a range where `thetas` is odd, an edge
+// where it is even.
 void show_precomputation(const AnyBrdf& f) {
   std::printf(
       "## The cost of precomputation\n\n    build/bin/study_paper docs/results\n\n%s. Bias: of the mean "

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the paper's results that need more than one sampler, light or material; each prints its
-// section.
+// The parts of the paper's results that need more than one sampler, light or material; each prints its section.
 #pragma once
 
 #include <string>

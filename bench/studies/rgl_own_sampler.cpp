@@ -41,7 +41,7 @@ Field read_field(ByteView bytes, const std::string& wanted, const std::string& p
   throw Error("no field '" + wanted + "'", path, "use an isotropic RGB file of the RGL database");
 }
 
-// A table an elevation: [1][theta][height][width], in the file's square, u = sqrt(2 theta / pi) across.
+// One table per elevation: [1][theta][height][width], in the file's square, u = sqrt(2 theta / pi) across.
 std::vector<BilinearTable> tables_of(const Field& field, const std::string& path) {
   if (field.shape.size() != 4 || field.shape[0] != 1) throw Error("not isotropic", path, "use another file");
   std::vector<BilinearTable> tables;

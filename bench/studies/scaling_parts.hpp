@@ -10,8 +10,8 @@ namespace reflectree::study {
 void show_threads();
 // Samples that go from one of N materials to another.
 void show_materials(const std::string& folder);
-// The general methods against the sharpness of GGX, with fitted exponents; the plot into `folder` if it is
-// named.
+// The general methods against the sharpness of GGX, with fitted exponents; the plot into `folder`
+// if it is named.
 void show_competitors(const std::string& folder);
 
 }  // namespace reflectree::study

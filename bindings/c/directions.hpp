@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of the C interface, three floats a direction, as directions.
+// Arrays of the C interface, three floats per direction, as directions.
 #pragma once
 
 #include <algorithm>

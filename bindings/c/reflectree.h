@@ -10,9 +10,9 @@
  *
  * Directions are unit vectors in the surface's frame, three floats each, x y z, z along the normal; both
  * point away from the surface. wo is known (towards the viewer), wi is sampled (towards the light). A
- * function's values are in sr^-1, without cosine. Every pdf is per solid angle, sr^-1. weight = f cos_theta_i
- * / pdf, per channel. Angles are radians. Arrays of n directions hold 3 n floats, arrays of values n *
- * channels.
+ * function's values are in sr^-1, without cosine. Every pdf is per solid angle, sr^-1. Per channel,
+ * weight = f cos_theta_i / pdf. Angles are radians. Arrays of n directions hold 3 n floats, arrays of values
+ * n * channels.
  *
  * Every call that can fail returns a reflectree_status; reflectree_last_error() then has a sentence that says
  * what is wrong, where, and how to mend it. Nothing is thrown across this border and nothing aborts. What a
@@ -69,15 +69,16 @@ typedef struct reflectree_function reflectree_function;
 
 /* f at n pairs: values[i * channels + c] is channel c of f(wo[i], wi[i]) in sr^-1, without cosine. All
  * directions lie above the surface. Returns 0; anything else ends the call that asked, with
- * REFLECTREE_ERROR_CALLBACK. May be called with any n > 0, and must return the same values for the same
- * directions. */
+ * REFLECTREE_ERROR_CALLBACK. May be called with any n > 0, and must return the same values for the
+ * same directions. */
 typedef int (*reflectree_callback)(void* user, size_t n, const float* wo, const float* wi, float* values);
 
 enum {
-  REFLECTREE_CONCURRENT =
-      1,                   /* several threads may call it at once; else calls are made one after the other */
-  REFLECTREE_ISOTROPIC = 2 /* turning both directions about the normal changes nothing, up to rounding: the
-                              library may do so, which is a little faster */
+  /* Several threads may call it at once; else calls are made one after the other. */
+  REFLECTREE_CONCURRENT = 1,
+  /* Turning both directions about the normal changes nothing, up to rounding: the library may do so, which is
+   * a little faster. */
+  REFLECTREE_ISOTROPIC = 2
 };
 
 /* The function that a pointer of yours evaluates.
@@ -86,7 +87,7 @@ enum {
  * flags     REFLECTREE_CONCURRENT | REFLECTREE_ISOTROPIC, or 0
  * user      passed to every call; may be null
  * release   called once with `user` after the last handle that may call f is gone; may be null. Not called
- * when this call fails. */
+ *           when this call fails. */
 REFLECTREE_API reflectree_status reflectree_function_callback(const char* name, int channels, uint32_t flags,
                                                               reflectree_callback f, void* user,
                                                               void (*release)(void* user),
@@ -99,8 +100,8 @@ REFLECTREE_API reflectree_status reflectree_function_open(const char* text, cons
 REFLECTREE_API void reflectree_function_free(reflectree_function* f);
 /* 1 to 256; 0 for what is no function. */
 REFLECTREE_API int reflectree_function_channels(const reflectree_function* f);
-/* values[i * channels + c] of f(wo[i], wi[i]); 0 where a direction is not above the surface or not of unit
- * length. */
+/* values[i * channels + c] of f(wo[i], wi[i]); 0 where a direction is not above the surface or
+ * not of unit length. */
 REFLECTREE_API reflectree_status reflectree_function_eval(const reflectree_function* f, size_t n,
                                                           const float* wo, const float* wi, float* values);
 
@@ -126,8 +127,7 @@ typedef struct reflectree_build_options {
   float albedo_error;       /* 1e-4: relative */
   int threads;              /* 0: as many as the machine has; results do not depend on it */
   uint64_t seed;            /* 1 */
-  uint64_t max_evaluations; /* of f; a build that would need more ends with what it has, and says so in its
-                               notes */
+  uint64_t max_evaluations; /* of f; a build that would need more ends with what it has, as its notes say */
   reflectree_progress progress; /* may be null */
   void* progress_user;
 } reflectree_build_options;
@@ -174,17 +174,16 @@ REFLECTREE_API uint32_t reflectree_pcg32_next(void* state);
 /* ---- Sampling ---- */
 
 /* Each call draws one direction for each of n viewers, in batches. wi: 3 n floats; pdf: n, may be null;
- * weight: n * channels, may be null. The estimate of the reflected radiance is the mean of weight *
- * light(wi). "No sample" has wi, pdf and weight 0 and counts as such in that mean: wo below the horizon, not
- * of unit length
- * (|wo|^2 off by more than 1e-3) or not finite, albedo 0, or 256 trials used up. */
+ * weight: n * channels, may be null. The estimate of the reflected radiance is the mean of
+ * weight * light(wi). "No sample" has wi, pdf and weight 0 and counts as such in that mean: wo below the
+ * horizon, not of unit length (|wo|^2 off by more than 1e-3) or not finite, albedo 0, or 256 trials used up. */
 
 /* Exact mode: the density is exactly proportional to the target times the cosine. Takes 5 words per trial. */
 REFLECTREE_API reflectree_status reflectree_sample_exact(const reflectree_sampler* s, size_t n,
                                                          const float* wo, reflectree_bits bits, void* state,
                                                          float* wi, float* pdf, float* weight);
-/* One-shot mode: nothing is rejected; always unbiased; the weight varies a little. Takes 4 words per
- * direction. */
+/* One-shot mode: nothing is rejected; always unbiased; the weight varies a little.
+ * Takes 4 words per direction. */
 REFLECTREE_API reflectree_status reflectree_sample_one_shot(const reflectree_sampler* s, size_t n,
                                                             const float* wo, reflectree_bits bits,
                                                             void* state, float* wi, float* pdf,
@@ -204,8 +203,7 @@ REFLECTREE_API reflectree_status reflectree_eval(const reflectree_sampler* s, si
  * REFLECTREE_ONE_SHOT (of both ways of one-shot sampling). 0 where there is no sample. */
 REFLECTREE_API reflectree_status reflectree_pdf(const reflectree_sampler* s, int mode, size_t n,
                                                 const float* wo, const float* wi, float* pdf);
-/* albedo[i]: the integral of target times cosine over wi, for wo[i], from the table; in units of the target.
- */
+/* albedo[i]: the integral of target times cosine over wi, for wo[i], from the table, in units of the target. */
 REFLECTREE_API reflectree_status reflectree_albedo(const reflectree_sampler* s, size_t n, const float* wo,
                                                    float* albedo);
 /* trials[i]: the expected trials of exact mode for wo[i]. */

@@ -14,9 +14,8 @@
 constexpr double pi = 3.14159265358979323846;
 bool faulty = false;  // forgets the cosine in the pdf, to see it found
 
-double eval(const double* wo, const double* wi) {
-  return wo[2] > 0 && wi[2] > 0 ? 0.5 / pi : 0;
-}  // sr^-1, without cosine
+// sr^-1, without cosine.
+double eval(const double* wo, const double* wi) { return wo[2] > 0 && wi[2] > 0 ? 0.5 / pi : 0; }
 double pdf(const double* wo, const double* wi) {  // per solid angle
   return wo[2] > 0 && wi[2] > 0 ? (faulty ? 1 : wi[2]) / pi : 0;
 }

@@ -32,8 +32,8 @@ struct Rings {
   }
 };
 
-// For files that name a basis without defining it. Two of them were once cut otherwise: the number of patches
-// tells.
+// For files that name a basis without defining it. Two of them were once cut otherwise:
+// the number of patches tells.
 const std::vector<Rings>& known_bases() {
   static const std::vector<Rings> all = {
       {"LBNL/Klems Full", {0, 5, 15, 25, 35, 45, 55, 65, 75, 90}, {1, 8, 16, 20, 24, 24, 24, 16, 12}},

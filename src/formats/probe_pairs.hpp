@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random pairs of directions, half of them near the mirror direction, at which a file is asked how sound its
-// values are.
+// Random pairs of directions, half of them near the mirror direction, at which a file is asked how sound
+// its values are.
 #pragma once
 
 #include "reflectree/brdf/brdf.hpp"

@@ -73,8 +73,8 @@ RglFit fit_rgl(const AnyBrdf& f, const RglFitOptions& options, const Host& host)
           float(-pi_v<double> + 2 * pi_v<double> / fields.reduction * i / double(count - 1)));
     }
   }
-  for (int i = 0; i < options.elevations;
-       ++i) {  // closer to each other towards grazing, where f changes most
+  // Closer to each other towards grazing, where f changes most.
+  for (int i = 0; i < options.elevations; ++i) {
     const double left = 1 - i / double(options.elevations - 1);
     fields.theta_o.push_back(float(right_angle * (1 - left * std::sqrt(left))));
   }

@@ -101,7 +101,7 @@ double luminance_at(const AnyBrdf& f, Direction wo, Direction wi) {
 }
 
 // f(w, w) cos theta = F D(w) / (4 sigma(w)), so D is an eigenvector of f cos theta int <w, m> D(m) dm. Four
-// steps are enough (Dupuy and Jakob 2018, section 4). A coarse grid is: the kernel is smooth.
+// steps are enough (Dupuy and Jakob 2018, section 4). So is a coarse grid, since the kernel is smooth.
 bool retro_normals(const AnyBrdf& f, const Grid& grid, const Host& host, std::vector<double>& d) {
   std::vector<double> retro(grid.size());
   for (std::size_t i = 0; i < grid.size(); ++i)

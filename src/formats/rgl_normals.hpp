@@ -15,7 +15,7 @@ struct RglNormals {
   RglSquare ndf, sigma;  // [v][u]; of isotropic functions two rows, alike
 };
 
-// `size` nodes a side.
+// `size` nodes per side.
 RglNormals fit_normals(const AnyBrdf& f, bool isotropic, int size, const Host& host);
 
 // Bilinear, as readers of the file do it.

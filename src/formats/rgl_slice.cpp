@@ -143,8 +143,7 @@ RglSlice SliceFit::operator()(double theta_o, double phi_o) const {
 }
 
 // Nodes whose half vectors reflect below the surface take the mean of what is beside them, ring by ring, so
-// that colours do not fade above the horizon. Densities take the first ring alone: the rest need not be
-// drawn.
+// that colours do not fade above the horizon. Densities take the first ring alone: the rest need not be drawn.
 void SliceFit::fill(std::vector<std::uint8_t>& known, RglSlice& slice) const {
   const int m = options_.colours;
   const auto plane = std::size_t(m) * std::size_t(m);

@@ -14,8 +14,8 @@ namespace reflectree {
 
 struct XmlElement {
   std::string_view name;
-  std::string_view
-      text;  // what is written in it, without blanks at its ends: the first piece if there are more
+  // What is written in it, without blanks at its ends: the first piece if there are more.
+  std::string_view text;
   bool in_pieces = false;             // elements or comments stand between pieces of text
   std::size_t line = 0;               // of its opening tag, from 1
   std::vector<std::size_t> children;  // indices of elements, in order
@@ -23,8 +23,7 @@ struct XmlElement {
 
 class XmlTree {
  public:
-  // What precedes the first '<' is skipped: tools leave a line of their own there. Throws Error with the
-  // line.
+  // What precedes the first '<' is skipped: tools leave a line of their own there. Throws Error with the line.
   XmlTree(ByteView bytes, const std::string& where);
 
   const XmlElement& root() const { return elements_.front(); }

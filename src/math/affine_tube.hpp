@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A linear function, a tube about it and a range, put together and rounded: what every operation on affine forms
-// ends with.
+// A linear function, a tube about it and a range, put together and rounded: what every operation
+// on affine forms ends with.
 #pragma once
 
 #include "reflectree/math/affine_form.hpp"

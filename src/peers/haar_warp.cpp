@@ -27,7 +27,7 @@ std::vector<std::vector<double>> pyramid(std::span<const float> cells, int size)
 struct Detail {
   std::array<double, 3> value;
 };
-// Of the cell (x, y) of a level with n cells a side, whose children are in `finer`.
+// Of the cell (x, y) of a level with n cells per side, whose children are in `finer`.
 Detail detail(const std::vector<double>& finer, std::size_t n, std::size_t x, std::size_t y) {
   const double* c = finer.data() + 4 * y * n + 2 * x;
   const double a = c[0], b = c[1], d = c[2 * n], e = c[2 * n + 1];

@@ -51,8 +51,8 @@ Made tabulated(const PeerSubject& subject, const Host& host) {
 
 constexpr const char* ours = "Reflectree";
 
-// name, summary, source, general, unbiased, make. Not unbiased: see paper_sampler.hpp, haar_warp.hpp,
-// warp_chain.hpp.
+// name, summary, source, general, unbiased, make. Where a method is not unbiased:
+// see paper_sampler.hpp, haar_warp.hpp, warp_chain.hpp.
 constexpr SamplerInfo all[] = {
     {"exact", "density exactly proportional to the target, by rejection under a tree of bounds", ours, true,
      true, exact},

@@ -34,7 +34,7 @@ Lobes lobes_of(const CookTorrance& m, float) {
 Lobes lobes_of(const AshikhminShirley& m, float) {
   return {{0.5f, ProposalLobe{}}, {0.5f, {LobeKind::half_power, m.n_x, m.n_y, {}, m.phi}}};
 }
-// A lobe a channel: axes and exponents may differ.
+// One lobe per channel: axes and exponents may differ.
 Lobes lobes_of(const Lafortune& m, float) {
   Lobes lobes{cosine(m.kd)};
   for (int c = 0; c < 3; ++c) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BMP and TGA by stb_image, which takes what a cut file lacks for zeros: whether all pixels are there is
-// asked before.
+// BMP and TGA by stb_image, which takes what a cut file lacks for zeros:
+// whether all pixels are there is asked before.
 #include <cstdlib>
 #include <memory>
 

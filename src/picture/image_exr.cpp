@@ -71,8 +71,7 @@ Imf::FrameBuffer frame_of(Image& image, int x0, int y0) {
   return frame;
 }
 
-// Types of attributes that have one size, which OpenEXR reads by that and not by the size that the file
-// gives.
+// Types of attributes that have one size, which OpenEXR reads by that and not by the size that the file gives.
 constexpr std::pair<std::uint32_t, std::string_view> sizes[] = {
     {1, " compression deepImageState envmap lineOrder "},
     {4, " float int "},

@@ -25,7 +25,7 @@ struct Rotation {
   }
 };
 
-using Sums = std::vector<double>;  // a channel
+using Sums = std::vector<double>;  // per channel
 
 // The running sums of one run at n = 1, 4, 16, ...: at[light][step][channel].
 using Run = std::vector<std::vector<Sums>>;

@@ -215,7 +215,7 @@ Bins equal_mass_bins(const TargetFunction& f, Direction wo, const BinOptions& op
   CubatureOptions coarse;
   coarse.relative_tolerance = f.concurrent ? 1e-3 : 1e-2;  // where a call is dear, few of a few points
   coarse.max_evaluations = 400'000;
-  coarse.cells_x = grid_x;  // ten regions a bin: a region's mass is taken as uniform
+  coarse.cells_x = grid_x;  // ten regions per bin: a region's mass is taken as uniform
   coarse.cells_y = grid_y;
   Regions regions;
   const CubatureResult whole = cubature(integrand, HemisphereChart::domain, coarse, regions);

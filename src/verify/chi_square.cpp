@@ -152,8 +152,7 @@ CheckResult check_counts(const Tally& tally, std::span<const double> density,
 
 // Weighted counts S have mean n m and, for many small bins, independent variances near the sum of w^2. Its
 // mean is n m times the mean of w^2 over that of w, which hardly varies inside a bin: unlike the sum itself
-// it does not follow the fluctuation that it judges. Bins are grouped by what is expected, for the same
-// reason.
+// it does not follow the fluctuation that it judges. Bins are grouped by what is expected, for the same reason.
 CheckResult check_weights(const Tally& tally, const Bins& bins, const ChiSquareOptions& options) {
   double statistic = 0, expected = 0, observed = 0, variance = 0, counts = 0;
   int groups = 0;

@@ -60,8 +60,8 @@ std::vector<double> table_places(const PackedSampler& packed, std::size_t count,
   };
   std::vector<Place> places;
   const auto albedo = [&](std::size_t i) { return double(packed.viewer.albedo.at(float(nodes[i]))); };
-  // Two nodes closer than the rounding of a direction are the sides of a jump: each is looked at from further
-  // away.
+  // Two nodes closer than the rounding of a direction are the sides of a jump: each is looked
+  // at from further away.
   const auto jump_after = [&](std::size_t i) {
     return i + 1 < nodes.size() && nodes[i + 1] - nodes[i] < 1.5e-7 * nodes[i];
   };

@@ -10,7 +10,7 @@
 namespace reflectree {
 namespace {
 
-constexpr int start_cells_x = 32, start_cells_y = 16;  // 8 to a grading of 15 to 19 e-folds
+constexpr int start_cells_x = 32, start_cells_y = 16;  // 8 per grading of 15 to 19 e-folds
 
 Vec3<double> widen(Direction w) { return normalize(Vec3<double>{w.x, w.y, w.z}); }
 

@@ -16,7 +16,7 @@ struct RelativeError {
 };
 
 struct Shot {
-  int samples = 0;     // a pixel
+  int samples = 0;     // per pixel
   double seconds = 0;  // CPU time of the one thread that made it
   RelativeError error;
 };

@@ -11,11 +11,11 @@ namespace reflectree::pictures {
 // What was asked for.
 struct Plan {
   int width = 450, height = 200;
-  int samples = 25;      // a pixel
+  int samples = 25;      // per pixel
   int rounds = 4;        // seeds
   int other_rounds = 3;  // of the other two integrators
   int reference = 400;   // samples of the converged picture
-  int directions = 16;   // a pixel, where ways of reducing variance are combined
+  int directions = 16;   // per pixel, where ways of reducing variance are combined
   std::uint64_t seed = 1;
   std::string ours = "one-shot";      // whom the verdict is about
   std::vector<std::string> samplers;  // empty: all

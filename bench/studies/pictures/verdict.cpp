@@ -11,7 +11,7 @@ namespace reflectree::pictures {
 
 namespace {
 
-// figure(cell) of the rival over ours, a ratio a seed.
+// figure(cell) of the rival over ours, one ratio per seed.
 template <class Figure>
 Estimate ratio(const Cells& rival, const Cells& ours, const Figure& figure) {
   std::vector<double> ratios;

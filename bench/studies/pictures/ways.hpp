@@ -24,7 +24,7 @@ std::span<const Way> ways();
 // Monotone one-shot mode differs where points are more than random alone.
 bool is_shown(const Way& way, std::string_view sampler);
 
-// `directions` a pixel are followed.
+// `directions` per pixel are followed.
 Method method_of(const Way& way, int directions);
 
 // Gains over plain of one sampler: variance, variance times CPU time, and variance without the one pixel in a

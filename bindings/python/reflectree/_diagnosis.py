@@ -150,8 +150,8 @@ class Diagnosis:
         return text
 
     def to_html(self, path: Union[None, str, "os.PathLike[str]"] = None) -> str:
-        """An offline page with figures; written to a file, too, where a path is given. Needs the studio
-        (docs/python.md)."""
+        """An offline page with figures; written to a file, too, where a path is given.
+        Needs the studio (docs/python.md)."""
         from ._studio import need_studio
 
         text: str = need_studio("Diagnosis.to_html").doctor_html(self._core, "rt.doctor", _core.version)

@@ -40,8 +40,8 @@ def doctor(subject: Union[None, Sampler, BrdfLike] = None, *, eval: Optional[Cal
         if not diagnosis:
             print(diagnosis)
 
-    or ``subject``, a :class:`Sampler`, a material or a function, with the name of one of our samplers or of a
-    competitor.
+    or ``subject``, a :class:`Sampler`, a material or a function, with the name of one of our samplers
+    or of a competitor.
 
     Parameters
     ----------
@@ -53,8 +53,8 @@ def doctor(subject: Union[None, Sampler, BrdfLike] = None, *, eval: Optional[Cal
     sample : callable
         ``sample(wo, rng) -> (wi, pdf, weight)``, arrays of shape (n, 3), (n,) and (n,) or (n, channels), drawn with
         the ``numpy.random.Generator`` given; with a fourth array, whether there is a direction, or zeros in ``wi``
-        where there is none. An ``rt.Samples`` will do. What is left out at the end: ``pdf`` is asked for, and there is
-        no weight.
+        where there is none. An ``rt.Samples`` will do. What is left out at the end: ``pdf`` is asked for,
+        and there is no weight.
     pdf : callable, optional
         ``pdf(wo, wi) -> (n,)``: the density of sample's directions per solid angle. Without it the method has none.
     sampler : str

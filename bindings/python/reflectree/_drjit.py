@@ -42,8 +42,8 @@ class DrJitSampler:
         return view.leave(wi), dr.select(active, height / area * wi[2], 0)
 
     def _unfolded(self, u2: Tuple[Any, Any]) -> Tuple[Tuple[Any, Any], Any]:
-        """Uniforms for the square and, of half squares, the coin for the side of wi.y: continuous across the plane of
-        incidence."""
+        """Uniforms for the square and, of half squares, the coin for the side of wi.y: continuous across
+        the plane of incidence."""
         dr = self._lib.dr
         ux, uy = u2
         if not self._domain.half:

@@ -82,8 +82,7 @@ struct SharpLobe {
   float width;       // radians, about: where f has fallen to a third
 };
 
-// Azimuths of wo at which an anisotropic f leaps or bends, for all elevations from where the band before
-// ends.
+// Azimuths of wo at which an anisotropic f leaps or bends, for all elevations from where the band before ends.
 struct AzimuthKnots {
   float theta_o_end;         // radians
   std::vector<float> phi_o;  // radians, in any order

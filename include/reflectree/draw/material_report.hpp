@@ -14,8 +14,8 @@ namespace reflectree::draw {
 // Domain, bounds, slabs, leaves, and what the builder measured about itself.
 ReportFigures figures_of(const SamplerData& data);
 
-// Target, tree, samples and lobe. `samples` are directions for viewer_at(theta_o); 10^5 or more fill the
-// histogram.
+// Target, tree, samples and lobe. `samples` are directions for viewer_at(theta_o);
+// 10^5 or more fill the histogram.
 ReportView view_of(const AnyBrdf& f, const SamplerData& data, float theta_o,
                    std::span<const Direction> samples);
 

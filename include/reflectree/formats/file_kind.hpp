@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that stand in the place of another: what a clone, a download or a slip of the hand leaves behind is
-// called by its name: the formats of materials from their table, others by what they begin with. Every reader
-// asks here before it says "not what I read".
+// Names files that stand in the place of another, as a clone, a download or a slip of the hand leaves them.
+// Formats of materials are known from their table, other files by what they begin with. Every reader asks here
+// before it says "not what I read".
 #pragma once
 
 #include <string>

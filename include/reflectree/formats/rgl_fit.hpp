@@ -14,8 +14,8 @@ namespace reflectree {
 struct RglFitOptions {
   int elevations = 16;  // of wo, from 0 to 90 degrees
   int azimuths = 9;     // of wo in a quarter of a turn; isotropic functions need none
-  int normals = 128;    // a side, of the tables over half vectors
-  int colours = 32;     // a side, of the tables of colours
+  int normals = 128;    // per side of the tables over half vectors
+  int colours = 32;     // per side of the tables of colours
 };
 
 struct RglFit {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scalar vocabulary in which reflectance models are written: one formula serves float, double
-// and, later, outward-rounded intervals. Models use select, min and max instead of branches.
+// The scalar vocabulary in which reflectance models are written: one formula serves float, double,
+// vector lanes and affine forms. Models use select, min and max instead of branches.
 #pragma once
 
 #include <bit>
@@ -43,8 +43,7 @@ constexpr T linear_mix(T t, T a, T b) {
   return a + t * (b - a);
 }
 
-// The sign bit decides, in integers: a branch would be a coin toss.
-// if_positive or if_negative by the sign bit of s.
+// if_positive or if_negative by the sign bit of s; in integers, since a branch would be a coin toss.
 REFLECTREE_INLINE float by_sign(float s, float if_positive, float if_negative) {
   const auto a = std::bit_cast<std::uint32_t>(if_positive), b = std::bit_cast<std::uint32_t>(if_negative);
   const std::uint32_t negative = std::uint32_t(0) - (std::bit_cast<std::uint32_t>(s) >> 31U);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Most peers are a density over directions: a way to draw one and its value, with the function only in the
-// weight. A density is plain immutable data with three functions; WeightedSampler adds the weight, once for
-// all.
+// weight. A density is plain immutable data with three functions; WeightedSampler adds the weight,
+// once for all.
 #pragma once
 
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Non-negative matrix factorisation: Y ~ left right with few terms and no negative entry, by the
-// multiplicative updates of Lee and Seung 2000 ("Algorithms for Non-negative Matrix Factorization", theorem
-// 2). They minimise the generalised Kullback-Leibler divergence, which to leading order is half the variance
-// of the weight Y / Y' under the density Y'.
+// multiplicative updates of Lee and Seung 2000 ("Algorithms for Non-negative Matrix Factorization",
+// theorem 2). They minimise the generalised Kullback-Leibler divergence, which to leading order is half the
+// variance of the weight Y / Y' under the density Y'.
 #pragma once
 
 #include <cstdint>

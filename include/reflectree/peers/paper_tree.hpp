@@ -74,8 +74,8 @@ struct PaperTree {
 PaperTree build_paper_tree(const AnyBrdf& f, Target target, Direction wo, const PaperOptions& options = {});
 std::size_t bytes_of(const PaperTree& tree);
 
-// T on the midpoints of a grid over the node's square, row by row; zero off the disk. Returns the number of
-// evaluations.
+// T on the midpoints of a grid over the node's square, row by row; zero off the disk.
+// Returns the number of evaluations.
 std::size_t paper_grid(const AnyBrdf& f, Target target, Direction wo, PaperMap map, const PaperNode& node,
                        int side, std::vector<double>& values);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A density over directions from densities over the square, one for each of a few elevations of wo, and, of
-// anisotropic functions, of a few azimuths all around. Between two slices a and b the density is their linear mixture, so it stays exact for every wo: either one of the
-// two is chosen with the mixture's probability (StochasticPair), or a method blends its tables and inverts
-// the blend.
+// anisotropic functions, of a few azimuths all around. Between two slices a and b the density is their linear
+// mixture, so it stays exact for every wo: either one of the two is chosen with the mixture's probability
+// (StochasticPair), or a method blends its tables and inverts the blend.
 #pragma once
 
 #include <algorithm>

@@ -14,8 +14,7 @@
 
 namespace reflectree {
 
-// The sizes of the published isotropic files are 8 elevations, 32 x 32 and, of the visible normals, 128 x
-// 128.
+// The sizes of the published isotropic files are 8 elevations, 32 x 32 and, of the visible normals, 128 x 128.
 struct WarpOptions {
   int slices = 16;
   int normals_width = 128, normals_height = 64;  // nodes of theta_h, phi_h

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures as plain values: Radiance .hdr, PNG, JPEG, BMP and TGA in, OpenEXR both ways, PNG out with tone
-// mapping.
+// Pictures as plain values: Radiance .hdr, PNG, JPEG, BMP and TGA in, OpenEXR both ways, PNG out
+// with tone mapping.
 #pragma once
 
 #include <map>
@@ -12,8 +12,8 @@
 
 namespace reflectree {
 
-// Rows from the top; the channels of a pixel side by side. A name such as "stderr.R" is channel R of the
-// layer "stderr".
+// Rows from the top; the channels of a pixel side by side. A name such as "stderr.R" is channel R
+// of the layer "stderr".
 struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;
@@ -33,8 +33,8 @@ Image make_image(int width, int height, std::vector<std::string> channels);
 
 // .hdr (RGBE), .exr, .png, .jpg, .bmp or .tga, told by the content (TGA, which says nothing, by its name):
 // every channel that the file has, under its own name (of 8 and 16 bits Y, YA, RGB or RGBA). Values of 8 and
-// 16 bits are in [0, 1], `encoded`. EXR channels R, G, B come out with the
-// primaries of sRGB, whatever the file's are. Throws Error.
+// 16 bits are in [0, 1], `encoded`. EXR channels R, G, B come out with the primaries of sRGB, whatever the
+// file's are. Throws Error.
 Image read_image(const std::string& path);
 Image read_hdr(ByteView bytes, const std::string& where);
 Image read_exr(ByteView bytes, const std::string& where);

@@ -15,8 +15,8 @@ struct Rgb8 {
   friend constexpr bool operator==(Rgb8, Rgb8) = default;
 };
 
-// The bytes of a PNG file of `pixels`, rows from the top. Throws Error where size and pixels disagree or
-// libpng refuses.
+// The bytes of a PNG file of `pixels`, rows from the top. Throws Error where size and pixels disagree
+// or libpng refuses.
 Bytes encode_png(int width, int height, std::span<const Rgb8> pixels);
 // The same of indices, which weighs least. Index 0 is transparent; index i + 1 is entry i of the palette, of
 // at most 255 entries.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// AnySampler: a sampler of directions chosen at run time, ours or a peer's. A value (shared, immutable
-// inside).
+// AnySampler: a sampler of directions chosen at run time, ours or a peer's. A value (shared, immutable inside).
 #pragma once
 
 #include <memory>

@@ -33,11 +33,10 @@ struct Certification {
 std::string no_proof(const AnyBrdf& f);
 
 // Slabs whose leaves are all proved become certified; their bounds rise where they must. A slab with an open
-// leaf stays estimated, and a note of the report says how many there are; its bounds rise only where a value was
-// seen above them. The result does
-// not depend on the host's threads. Throws Error where no_proof() has an answer, for options out of range, and
-// where f returns values that its own enclosure does not hold; Cancelled when the host says so: `data` is then
-// as it was.
+// leaf stays estimated, and a note of the report says how many there are; its bounds rise only where a value
+// was seen above them. The result does not depend on the host's threads. Throws Error where no_proof() has an
+// answer, for options out of range, and where f returns values that its own enclosure does not hold; Cancelled
+// when the host says so: `data` is then as it was.
 Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options = {},
                       const Host& host = {});
 

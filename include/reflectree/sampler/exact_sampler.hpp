@@ -2,8 +2,8 @@
 // Exact mode: directions with a density exactly proportional to t cos_i for every wo, whatever the errors
 // of any integral; only the bounds matter. One trial: a leaf in proportion to its volume V = area * M, a point
 // of it with density q / area (q: the leaf's product-linear shape of mean 1, M q: its bound), accepted with
-// probability T / (a M q); after a rejection a leaf is chosen anew. pdf = t cos_i / a(wo), a: the tabulated
-// albedo.
+// probability T / (a M q); after a rejection a leaf is chosen anew. pdf = t cos_i / a(wo),
+// where a is the tabulated albedo.
 #pragma once
 
 #include <memory>
@@ -80,8 +80,8 @@ class ExactSampler {
     return filled;
   }
 
-  // One trial. Accepted: weight = sum(V) a f_cos J / min(T, a M q); else nullopt, which counts as weight
-  // 0. Unbiased without the albedo table being right and even where a bound is overshot: the referee of both
+  // One trial. Accepted: weight = sum(V) a f_cos J / min(T, a M q); else nullopt, which counts as weight 0.
+  // Unbiased without the albedo table being right and even where a bound is overshot: the referee of both
   // modes. pdf is that of the trial's acceptance: min(T, a M q) cos_i / (sum(V) a J).
   template <RandomBits U>
   std::optional<DirectionSample<Value>> sample_once(Direction wo, U& u) const {

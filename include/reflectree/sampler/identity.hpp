@@ -9,7 +9,7 @@
 namespace reflectree {
 
 BrdfProbes probe_identity(const AnyBrdf& f, const Target& target);
-// Of members all over the ranges, one a pair.
+// Of members all over the ranges, one per pair.
 BrdfProbes probe_identity(const AnyFamily& family, const Target& target);
 // Throws Error, naming the pair that differs most, if f is not the BRDF that the sampler was built for.
 void check_identity(const SamplerData& data, const AnyBrdf& f, float relative_tolerance = 1e-3f);

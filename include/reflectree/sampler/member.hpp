@@ -8,8 +8,7 @@
 namespace reflectree {
 
 // The slabs that hold the parameters, the albedo there, the domain with the member's widths. `material` and
-// `probes` (identity.hpp) are the member's. Throws Error where data is of no family, or outside of the
-// ranges.
+// `probes` (identity.hpp) are the member's. Throws Error where data is of no family, or outside of the ranges.
 SamplerData member_data(const SamplerData& family, const Parameters& at, std::string material,
                         const BrdfProbes& probes);
 

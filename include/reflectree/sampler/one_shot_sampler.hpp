@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One-shot mode: no rejection; two uniforms in, a direction out; the density is the tree's own,
 // product-linear in each leaf, and never evaluates f. Always unbiased; the weight f_cos / pdf varies a little
-// instead. Two ways in: an alias table (fastest, not monotone), and a monotone descent for QMC points, with
-// its inverse.
+// instead. Two ways in: an alias table (fastest, not monotone), and a monotone descent for QMC points,
+// with its inverse.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formula of a model in lanes, chosen at run time: one virtual call for as many directions as there are
-// lanes.
+// The formula of a model in lanes, chosen at run time: one virtual call for as many directions
+// as there are lanes.
 #pragma once
 
 #include <memory>

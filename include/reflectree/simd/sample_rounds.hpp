@@ -21,8 +21,8 @@
 namespace reflectree {
 
 // Exact: out[i] is distributed as sampler.sample(wo[i], u), independent of the others. points: empty, or in
-// [0, 1)^2 the first two words of each direction's bits (UniformBits), which choose the leaf of its first
-// trial.
+// [0, 1)^2 the first two words of each direction's bits (UniformBits), which choose the leaf
+// of its first trial.
 template <RandomBits U, class Stats = NoStatistics>
 void sample_rounds(const ExactSampler<AnyBrdf>& sampler, std::span<const Direction> wo,
                    std::span<const Vec2<double>> points, U& u, const SampleRows& out,

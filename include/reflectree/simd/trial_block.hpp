@@ -80,7 +80,7 @@ struct alignas(64) TrialBlock {
     at[height][k] = cell.height;
     return k;
   }
-  // From random bits, as place() in leaf.hpp: x is mixed here, y is left to the lanes.
+  // From random bits, as place() in packed_leaf.hpp: x is mixed here, y is left to the lanes.
   template <RandomBits U>
   REFLECTREE_INLINE std::size_t add(std::size_t i, const Incidence& in, const ChosenLeaf& chosen, bool half,
                                     U& u) {

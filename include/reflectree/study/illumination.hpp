@@ -4,8 +4,8 @@
 // Let X = w L(R wi) be one sample of the reflected radiance, R a rotation uniform in SO(3): a surface of any
 // orientation. For two independent samples the variance is (X - X')^2 / 2 in the mean, and the average over R
 // can be taken in closed form:
-//   <Var X> = E[ <L^2> (|w|^2 + |w'|^2) / 2 - w.w' C(angle(wi, wi')) ],   C(g) = <L(R a) L(R b)>, angle(a,b)
-//   = g.
+//   <Var X> = E[ <L^2> (|w|^2 + |w'|^2) / 2 - w.w' C(angle(wi, wi')) ],
+//   C(g) = <L(R a) L(R b)>, angle(a, b) = g.
 // So a light needs only its mean square and its autocorrelation; a sun that no random rotation would ever hit
 // is as easy as a sky.
 #pragma once

@@ -14,7 +14,7 @@ namespace reflectree::study {
 struct StudyOptions {
   std::vector<double> theta_o_deg{10, 45, 75, 85};
   double phi_o_deg = 37;  // azimuth of wo where the function depends on it: on no axis, at no node of a table
-  std::uint32_t samples = 1U << 16U;  // a cell; a multiple of 16
+  std::uint32_t samples = 1U << 16U;  // per cell; a multiple of 16
   std::uint32_t mean_of = 1024;       // samples in the mean whose RMSE counts: there bias tells
   int curve_repeats = 32;             // runs behind each point of an error curve
   std::uint32_t curve_samples = 1024;
@@ -41,7 +41,7 @@ struct StudyCell {
   // What is left of |bias| without its interval: no method pays for what cannot be told from noise.
   double sure_bias() const { return std::max(0., std::abs(bias) - bias_interval); }
   double sample_ns = 0, pdf_ns = 0, floor_ns = 0;  // pdf_ns 0: no density; floor: polar cosine hemisphere
-  // A light: N RMSE^2 of the mean of N = mean_of samples, relative to (mean light * albedo)^2: the variance
+  // Per light: N RMSE^2 of the mean of N = mean_of samples, relative to (mean light * albedo)^2: the variance
   // of one sample + N sure_bias^2. Under a light that is not uniform the bias may be larger, never smaller in
   // the mean: a biased method is let off lightly.
   std::vector<double> error;
@@ -60,16 +60,16 @@ struct SamplerResult {
   std::string fault;  // what building it threw; then nothing else is measured
   std::size_t bytes = 0;
   double build_seconds = 0;        // thread CPU time, one thread
-  std::vector<StudyCell> cells;    // a theta_o
-  std::vector<ErrorCurve> curves;  // a light
-  // A theta_o: its density in the plane of incidence at plane_angles(); empty without a density.
+  std::vector<StudyCell> cells;    // per theta_o
+  std::vector<ErrorCurve> curves;  // per light
+  // Per theta_o: its density in the plane of incidence at plane_angles(); empty without a density.
   std::vector<std::vector<double>> slices;
 };
 
 struct MaterialResult {
   std::string material;
-  std::vector<double> albedo, albedo_error;  // a theta_o, of the target, by cubature
-  std::vector<std::vector<double>> slices;   // a theta_o: the target's own
+  std::vector<double> albedo, albedo_error;  // per theta_o, of the target, by cubature
+  std::vector<std::vector<double>> slices;   // per theta_o: the target's own
   std::vector<SamplerResult> samplers;       // those that are for this material
 };
 
@@ -95,7 +95,7 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
 // density, and they count.
 struct ReferenceDraws {
   std::vector<DirectionSample<Spectrum>> draws;  // a multiple of 16
-  std::vector<double> products;                  // a light: the mean of v.v' C(angle(wi, wi'))
+  std::vector<double> products;                  // per light: the mean of v.v' C(angle(wi, wi'))
 };
 ReferenceDraws reference_draws(const AnySampler<Spectrum>& exact, Direction wo,
                                std::span<const Illumination> lights, const StudyOptions& options,

@@ -11,8 +11,7 @@ struct Score {
   std::string sampler;
   bool ours = false, general = false;
   int materials = 0, biased_cells = 0, faults = 0;
-  // Geometric mean, over the materials that it serves, of its efficiency over that of the better of our
-  // modes.
+  // Geometric mean, over the materials that it serves, of its efficiency over that of the better of our modes.
   double relative_efficiency = 0;
 };
 

@@ -8,10 +8,11 @@
 //   weight_agrees          weight * pdf == f cos_theta_i, channel by channel
 //   pdf_integral           integral of pdf + share of lost draws == 1
 //   chi_square_pdf         directions fall into bins of equal probability as pdf says
-//   light                  weights bin by bin, and their mean, are f cos_theta_i by cubature: the white
-//   furnace support                pdf > 0 where f > 0 above                  no direction with a weight lies
-//   below the horizon independent            successive directions know nothing of each other spread
-//   directions do not repeat, nor lie on lines
+//   light                  weights bin by bin, and their mean, are f cos_theta_i by cubature: the white furnace
+//   support                pdf > 0 where f > 0
+//   above                  no direction with a weight lies below the horizon
+//   independent            successive directions know nothing of each other
+//   spread                 directions do not repeat, nor lie on lines
 // Where one fails, hypotheses are tried: each is a transformation of pdf, directions or weights that would
 // explain what was seen. The simplest one that explains the data to within statistics is named.
 #pragma once

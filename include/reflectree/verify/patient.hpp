@@ -2,8 +2,9 @@
 // What the doctor examines: anybody's eval, sample and pdf, as functions over batches. A renderer's own
 // code, another library, a program on a pipe (program_patient.hpp): whatever fills in the three functions.
 //
-//   const Patient mine = patient("mine", f, [](Direction wo, Pcg32& u) { ... }, [](Direction wo, Direction
-//   wi) { ... }); const Diagnosis diagnosis = doctor(mine);        // doctor.hpp
+//   const Patient mine = patient("mine", f, [](Direction wo, Pcg32& u) { ... },
+//                                [](Direction wo, Direction wi) { ... });
+//   const Diagnosis diagnosis = doctor(mine);        // doctor.hpp
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,7 @@ namespace reflectree {
 
 // What eval returns: f in sr^-1, or f cos_theta_i. `detect`: the doctor finds out, and says so.
 enum class EvalKind : std::uint8_t { detect, f, f_cos };
-// What sample returns beside the direction and its pdf: f cos_theta_i / pdf, one of the other two, or
-// nothing.
+// What sample returns beside the direction and its pdf: f cos_theta_i / pdf, one of the other two, or nothing.
 enum class ValueKind : std::uint8_t { detect, weight, f_cos, f, none };
 
 struct PatientDraw {

@@ -17,8 +17,8 @@ double normal_two_sided_quantile(double significance);
 // The z with P(Z >= z) = significance.
 double normal_upper_quantile(double significance);
 
-// Sidak 1967: the level of each of `tests` independent tests at which the whole family errs with
-// probability `family`.
+// Sidak 1967: the level of each of `tests` independent tests at which the whole family errs
+// with probability `family`.
 double sidak(double family, int tests);
 
 // Upper end of the one-sided Clopper-Pearson interval for the rate of `events` in `trials`.

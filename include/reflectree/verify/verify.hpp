@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every check of this room on one sampler, in one call; `reflectree verify` is this call and prints its
-// report.
+// Every check of this room on one sampler, in one call; `reflectree verify` is this call and prints its report.
 //
 //   const auto report = reflectree::verify(my_brdf);     // builds a sampler and judges it
 //   const auto report = reflectree::verify(sampler);     // judges one that is built

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a way into a sampler drew for one wo: bins, channels and lanes. Weights are reduced by the referee's
-// own target.
+// What a way into a sampler drew for one wo: bins, channels and lanes. Weights are reduced
+// by the referee's own target.
 #pragma once
 
 #include "reflectree/verify/chi_square.hpp"

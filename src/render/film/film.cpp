@@ -85,8 +85,8 @@ std::uint64_t identity_of(const Scene& s, const RenderOptions& o) {
   return fnv(std::to_string(o.seed), h);
 }
 
-// Pixels that are rendered together, a sample of each at a time: what meets in packets of rays depends on
-// nothing else.
+// Pixels that are rendered together, a sample of each at a time: what meets in packets of rays depends
+// on nothing else.
 constexpr int tile_size = 32;
 struct Tile {
   int x0, y0, x1, y1;

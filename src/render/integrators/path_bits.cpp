@@ -30,8 +30,8 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint64_t seed) {
 
 }  // namespace
 
-// Neighbouring seeds and streams of pcg32 begin with outputs on a lattice: samples and pixels would not be
-// independent.
+// Neighbouring seeds and streams of pcg32 begin with outputs on a lattice:
+// samples and pixels would not be independent.
 PathBits::PathBits(PointSet set, std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
     : set_(set), index_(sample), rest_(mixed(mixed(seed * 0x9e3779b97f4a7c15ULL + sample) + pixel), pixel) {
   if (set.kind == PointSet::Kind::independent) return;

@@ -32,8 +32,7 @@ const Metal metals[] = {
     {"V_palik", {4.27758f, 3.51295f, 2.76107f}, {3.4913f, 2.88945f, 3.11152f}},
     {"W", {4.37082f, 3.30025f, 2.99841f}, {3.50064f, 2.60487f, 2.27323f}},
     {"TiN", {1.64845f, 1.15052f, 1.37982f}, {3.36833f, 1.9435f, 1.10207f}},
-    // What is no metal, too; where a spectrum covers a part of the visible alone, a colour may be clamped at
-    // 0.
+    // What is no metal, too; where a spectrum covers a part of the visible alone, a colour may be clamped at 0.
     {"a-C", {2.94405f, 2.22714f, 1.96816f}, {0.887465f, 0.799299f, 0.81529f}},
     {"AlAs", {3.6053f, 3.23294f, 2.21632f}, {0.000679437f, 0, 0.00751271f}},
     {"AlSb", {0, 4.13937f, 4.66925f}, {0, 0.0940091f, 1.30057f}},

@@ -96,7 +96,7 @@ struct Sampled final : Scattering {
                        std::span<Scattered> out) const override {
     if (!sampler.divides() || u.size() == 1) return Scattering::sample_n(wo, place, u, out);
     if (!(wo.z > 0)) return 0;
-    // Once a thread: a spectrum has room for 256 channels, and clearing 64 of them costs more than drawing.
+    // Once per thread: a spectrum has room for 256 channels, and clearing 64 of them costs more than drawing.
     thread_local std::array<DirectionSample<Spectrum>, max_split> drawn;
     UniformBits bits = u[0].lend();
     const std::size_t filled = sampler.sample_n(wo, bits, std::span(drawn).first(u.size()));

@@ -108,8 +108,8 @@ struct Glass final : Clear<Glass> {
   }
 };
 
-// The light that is mirrored once, three times, ... inside: r + t r t + t r^3 t + ... = 2 r / (1 + r), r + t
-// = 1.
+// The light that is mirrored once, three times, ... inside: r + t r t + t r^3 t + ... = 2 r / (1 + r), where
+// r + t = 1.
 struct Pane final : Clear<Pane> {
   using Clear::Clear;
   std::optional<Scattered> sample(Direction wo, Place place, PathBits& u) const override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hash FNV-1a of 64 bits (Fowler, Noll & Vo 1991): tells scenes apart that differ by accident, not
-// by malice.
+// The hash FNV-1a of 64 bits (Fowler, Noll & Vo 1991): tells scenes apart that differ by accident,
+// not by malice.
 #pragma once
 
 #include <cstdint>

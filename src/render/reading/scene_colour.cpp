@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sampled spectra to linear sRGB, as Mitsuba's RGB variants do: by the CIE 1931 functions, a reflectance or
-// an index seen under D65, an emission as it is; Y of a constant 1 is 1. Tables are interpolated linearly at
-// every nm.
+// an index seen under D65, an emission as it is; Y of a constant 1 is 1. Tables are interpolated linearly
+// at every nm.
 #include "scene_colour.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's text with its <include>s put in, what each part of it came from, and where the scene's files are
-// looked for.
+// A scene's text with its <include>s put in, what each part of it came from, and where the scene's files
+// are looked for.
 #pragma once
 
 #include <map>

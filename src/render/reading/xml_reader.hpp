@@ -45,7 +45,6 @@ class XmlReader {
   std::string beside(const std::string& file) const;
   // The one that `n` names as "filename".
   std::string file(Node n) const;
-  // What `read` returns; its errors get the element's place.
   // What `read` returns; an error is noted and `otherwise` stands in for it: nothing is rendered then.
   template <class Read, class T>
   T attempt(const Read& read, T otherwise) const {
@@ -64,6 +63,7 @@ class XmlReader {
   // A sentence about all of those, or "".
   std::string idle_words() const;
 
+  // What `read` returns; its errors get the element's place.
   template <class Read>
   auto placed(Node n, const Read& read) const {
     try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// <shape>: its vertices, triangles, spheres, disks, ..., its material, and the light it gives. Instances are
-// copies.
+// <shape>: its vertices, triangles, spheres, disks, ..., its material, and the light it gives.
+// Instances are copies.
 #pragma once
 
 #include "reflectree/render/shapes/mesh_files.hpp"

@@ -66,8 +66,7 @@ T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_
 }
 
 // Where the line meets the sphere, nearest first, in double precision: the distances of the feet of the
-// perpendicular plus and minus the half chord (Haines et al. 2019, Ray Tracing Gems, 7), free of
-// cancellation.
+// perpendicular plus and minus the half chord (Haines et al. 2019, Ray Tracing Gems, 7), free of cancellation.
 bool sphere_distance(const Sphere& s, Point o, Direction d, float near, float far, float& distance) {
   const Vec3<double> from = to_double(o) - s.centre, along = to_double(d);
   const double over = 1 / dot(along, along), b = -dot(from, along) * over;

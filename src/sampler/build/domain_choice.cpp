@@ -16,8 +16,8 @@ namespace {
 constexpr float half_square_up_to = 0.2f;  // asymmetry that still is cheaper on half a square
 
 // What half a square costs beside a whole one, however many leaves it has: the mass of the larger of both
-// mirror images over that of their mean, less 1, at the worst of the slabs. Points are drawn by the trees'
-// own bounds.
+// mirror images over that of their mean, less 1, at the worst of the slabs. Points are drawn
+// by the trees' own bounds.
 float folding_cost(const std::vector<Slab>& slabs, const Field& field, std::uint64_t seed) {
   constexpr std::size_t points_a_slab = 4096;
   Pcg32 u(seed, 13);

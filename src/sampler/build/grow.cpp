@@ -176,8 +176,7 @@ std::vector<std::uint32_t> dearest_leaves(Slab& slab, const GrowthRules& rules, 
   return chosen;
 }
 
-// What a slab needs next: to be halved along a known coordinate, or leaves to be split; nothing when it is
-// done.
+// What a slab needs next: to be halved along a known coordinate, or leaves to be split; nothing when done.
 struct Step {
   int halve = -1;
   std::vector<std::uint32_t> split;

@@ -92,8 +92,8 @@ struct Leaf {
   }
 };
 
-// The cut that closes in on seen_at, whatever the grid says: towards the pole along the radius, elsewhere the
-// longer side.
+// The cut that closes in on seen_at, whatever the grid says: towards the pole along the radius,
+// elsewhere the longer side.
 bool close_in_along_x(const Leaf& leaf);
 
 // The shape q of a leaf at p.

@@ -144,8 +144,8 @@ class Proof {
     return axis;
   }
 
-  // Along the axis that brings the halves closest to being proved: tried at every third halving, foretold in
-  // between.
+  // Along the axis that brings the halves closest to being proved: tried at every third halving,
+  // foretold in between.
   void divide(const OpenBox& b) {
     constexpr int trusted = 2;
     std::size_t axis = 0;

@@ -8,8 +8,7 @@
 
 namespace reflectree::detail {
 
-// A draw for a viewer, and what it says: 1 on average, whoever the viewer is, where trees and albedo are
-// right.
+// A draw for a viewer, and what it says: 1 on average, whoever the viewer is, where trees and albedo are right.
 struct ViewerDraw {
   Known known;
   float says;

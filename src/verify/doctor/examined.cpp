@@ -15,7 +15,7 @@
 namespace reflectree::detail {
 namespace {
 
-// At least six a side; a bin in a dim place is large and has more.
+// At least six per side; a bin in a dim place is large and has more.
 Nodes nodes_of(const Bins& bins) {
   Nodes nodes;
   for (std::size_t b = 0; b < bins.boxes.size(); ++b) {

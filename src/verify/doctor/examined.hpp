@@ -38,8 +38,8 @@ std::vector<ExaminedView> examine_views(const Functions& f, const DoctorOptions&
 struct Fit {
   double statistic = 0, dof = 1, p_value = 1, integral = 0;
 };
-// Directions against masses per bin; lost draws against what the masses leave out, unless the shape alone
-// counts.
+// Directions against masses per bin; lost draws against what the masses leave out,
+// unless the shape alone counts.
 Fit fit_of(const DoctorView& view, std::span<const double> mass, bool shape_alone = false);
 // How far integral + lost share may be from 1, at z standard deviations of that share.
 double integral_tolerance(const ExaminedView& view, double z);

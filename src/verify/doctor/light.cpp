@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t groups = 16;
 
 // How far the mean of n variables in [0, range] may be from its expectation, but for one case in 2 e^l:
-// Bernstein's inequality. Weights of a poor sampler are rare and large, so that their sums are far from
-// normal.
+// Bernstein's inequality. Weights of a poor sampler are rare and large, so that their sums are far from normal.
 double bernstein(double variance, double range, double n, double l) {
   const double b = range * l / 3;
   return (b + std::sqrt(b * b + 2 * n * variance * l)) / n;

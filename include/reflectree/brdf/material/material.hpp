@@ -4,8 +4,7 @@
 //   material  = term { "+" term }                       up to 16 terms, 4096 bytes
 //   term      = [ weight "*" ] ( model [ ":" parameter { "," parameter } ] | path [ "#" member ] )
 //   parameter = name "=" number [ "/" number "/" number ]       one number serves r, g and b
-//             | name "=" number ".." number                     a range: the material is a family
-//             (family.hpp)
+//             | name "=" number ".." number                     a range: a family (family.hpp)
 //
 // A word that contains "." or "/" or is followed by "#" is a path; any other must be a model of the registry.
 // A path or member in double quotes may hold anything (\" and \\ inside). `alpha=0.1` sets a model's
@@ -66,8 +65,7 @@ using FileLoader = std::function<AnyBrdf(const std::string& path, const std::str
 AnyBrdf make_brdf(const Material& material, const FileLoader& load_file = nullptr);
 // The family that a material with ranges describes, likewise.
 AnyFamily make_family(const Material& material, const FileLoader& load_file = nullptr);
-// The member of a material with ranges at fixed parameters, as a material. Throws Error outside of the
-// ranges.
+// The member of a material with ranges at fixed parameters, as a material. Throws Error outside of the ranges.
 Material member_of(const Material& material, const Parameters& at);
 
 }  // namespace reflectree

@@ -10,8 +10,7 @@ namespace reflectree {
 
 // ABC microfacet model: f = kd / pi + F S G / (pi cos_o cos_i) with S = A / (1 + B (1 - cos theta_h))^C,
 // G of Cook and Torrance 1982, F the Fresnel equation of an unpolarised dielectric; ior >= 1.
-// Löw, Kronander, Ynnerman, Unger 2012, "BRDF Models for Accurate and Efficient Rendering of Glossy
-// Surfaces".
+// Löw, Kronander, Ynnerman, Unger 2012, "BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces".
 struct AbcMicrofacet {
   std::string name = "abc";
   Rgb kd, a;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresnel's equations for unpolarised light (Born & Wolf, Principles of Optics, 1.5 and 14.2), and Schlick's
-// approximation.
+// Fresnel's equations for unpolarised light (Born & Wolf, Principles of Optics, 1.5 and 14.2),
+// and Schlick's approximation.
 #pragma once
 
 #include "reflectree/brdf/value.hpp"
@@ -9,8 +9,8 @@
 namespace reflectree {
 
 // A dielectric: the mean of both polarisations. n: index of the far side over the near side;
-// root = n cos theta_t = sqrt(n^2 - sin^2 theta), 0 where all light is reflected. 0 / 0 where cosine and root
-// are 0.
+// root = n cos theta_t = sqrt(n^2 - sin^2 theta), 0 where all light is reflected. 0 / 0 where cosine
+// and root are 0.
 template <class T>
 T fresnel_dielectric(T cosine, T root, T n2) {
   const T perpendicular = (cosine - root) / (cosine + root);
@@ -37,8 +37,7 @@ T schlick_power(T c) {
   return m2 * m2 * m;
 }
 
-// 1 - (1 - c)^5 = c (1 + m + m^2 + m^3 + m^4), m = 1 - c: precise at grazing, where 1 - schlick_power
-// cancels.
+// 1 - (1 - c)^5 = c (1 + m + m^2 + m^3 + m^4), m = 1 - c: precise at grazing, where 1 - schlick_power cancels.
 template <class T>
 T schlick_complement(T c) {
   const T m = max(T(1) - c, T(0));

@@ -18,8 +18,8 @@ struct SgdChannel {
 
 // Shifted Gamma distribution: f = (kd + ks F D G(theta_o) G(theta_i) / (cos_o cos_i)) / pi per channel.
 // Bagher, Soler, Holzschuch 2012, "Accurate fitting of measured reflectances using a Shifted Gamma
-// micro-facet distribution", eqs. 8-12. The fitted Fresnel term may turn negative; f is cut at 0, the term is
-// not.
+// micro-facet distribution", eqs. 8-12. The fitted Fresnel term may turn negative; f is cut at 0,
+// the term is not.
 struct Sgd {
   std::string name = "sgd";
   SgdChannel channels[3];

@@ -26,8 +26,8 @@ struct RglWideFields {
   // Nodes of the known direction, radians, ascending; one phi_o: isotropic. Several begin at -pi and span a
   // turn divided by `reduction`.
   std::vector<float> phi_o{0}, theta_o;
-  // 1: nothing; 2: a half turn about the normal leaves the material as it is; 4: x and y are mirrored by
-  // planes.
+  // 1: nothing; 2: a half turn about the normal leaves the material as it is; 4: x and y
+  // are mirrored by planes.
   int reduction = 1;
   RglSquare sigma, ndf;
   int warp_width = 0, warp_height = 0;

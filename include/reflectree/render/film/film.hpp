@@ -27,8 +27,8 @@ struct Film {
 };
 
 // Adds passes to `film`, empty or from an earlier render of the same scene, seed and technique (else an
-// Error), until it has what `options` ask for. False where the host cancelled: `film` then holds the whole
-// passes before.
+// Error), until it has what `options` ask for. False where the host cancelled:
+// `film` then holds the whole passes before.
 bool render_into(Film& film, const Scene& scene, const RenderOptions& options, const Host& host = {});
 
 // Channels R, G, B and stderr.R, stderr.G, stderr.B, the standard error of each pixel's mean, too

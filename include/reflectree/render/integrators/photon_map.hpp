@@ -23,9 +23,9 @@ class PhotonMap {
   PhotonMap(std::vector<Photon> photons, float radius);
 
   std::size_t size() const { return photons_.size(); }
-  // Radiance that `at` reflects, from photons whose paths have `fewest` to `most` edges: their
-  // f |cos| about the shading normal times their etendue, by the kernel 2 / (pi r^2) (1 - d^2 / r^2) of the
-  // disk (Silverman 1986, 4.2).
+  // Radiance that `at` reflects, from photons whose paths have `fewest` to `most` edges: their f |cos| about
+  // the shading normal times their etendue, by the kernel 2 / (pi r^2) (1 - d^2 / r^2) of the disk
+  // (Silverman 1986, 4.2).
   Rgb reflected(const PathVertex& at, int fewest, int most) const;
 
  private:

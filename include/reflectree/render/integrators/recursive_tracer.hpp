@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recursive (distribution) ray tracing (Cook, Porter & Carpenter 1984): a ray that meets a surface sends
 // `split` rays on, drawn together by the material's sample_n, and as many to lights; each of those sends a
-// quarter as many, and so on down to one. Surfaces with deltas alone send one ray and keep the number for the
-// next.
+// quarter as many, and so on down to one. Surfaces with deltas alone send one ray and keep the number
+// for the next.
 #pragma once
 
 #include "reflectree/render/integrators/integrator.hpp"

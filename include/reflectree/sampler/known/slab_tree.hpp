@@ -38,8 +38,8 @@ class SlabTree {
  private:
   static constexpr std::size_t max_others = 3;
 
-  // Of nodes at >= slabs_; what lies below is a slab. theta_o goes by its negative cosine, which ascends with
-  // it.
+  // A child below slabs_ is a slab; any other is the node `child - slabs_`. theta_o is compared by its negative
+  // cosine, which ascends with it.
   struct Node {
     float split = 0;
     std::uint32_t axis = 0, lower = 0, upper = 0;

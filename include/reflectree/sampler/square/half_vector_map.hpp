@@ -8,15 +8,16 @@ namespace reflectree::detail {
 
 // The half vectors wh whose reflection lies above the surface fill, at azimuth phi, the elevations up to
 //   theta_max(phi) = pi/4 + psi/2,  tan psi = tan theta_o cos phi,
-// a region that is a star about the normal. In slopes tau = tan theta_h, with h = hypot(cos_theta_o,
-// sin_theta_o cos phi), its rim is tau_max = sec psi + tan psi = P / cos_theta_o, P = h + sin_theta_o cos
-// phi. The radius y in [0, 1] of the square runs over it by
+// a region that is a star about the normal. In slopes tau = tan theta_h its rim is
+//   tau_max = sec psi + tan psi = P / cos_theta_o,  P = h + sin_theta_o cos phi,
+//   h = hypot(cos_theta_o, sin_theta_o cos phi).
+// The radius y in [0, 1] of the square runs over it by
 //   tau(y) = y d,  d = P / (P + (cos_theta_o - P) y),  tau' = d^2:
 // it meets the rim at y = 1, so that nothing of the square is wasted, and tau'(0) = 1 for every phi and wo,
 // so that a specular lobe stays put. d(solid angle of wh) = tau cos^3 theta_h dtau dphi.
 
-// P and cos_theta_o, both multiplied by L = h + |sin_theta_o cos phi|: P L is L^2, or, where P would cancel,
-// cos^2 theta_o.
+// P and cos_theta_o, both multiplied by L = h + |sin_theta_o cos phi|: P L is L^2, or cos^2 theta_o
+// where P would cancel.
 template <class T>
 struct HalfVectorStar {
   T p, c;

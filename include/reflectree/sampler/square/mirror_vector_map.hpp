@@ -11,8 +11,8 @@ namespace reflectree::detail {
 // above the surface up to the rim
 //   R = z / (s cos phi + sqrt(s^2 cos^2 phi + z^2)) = p / c,
 // and the radius runs over it as in the star: t = y d, d = p / (p + (c - p) y), t' = d^2. There
-//   wi.z = z d (1 - y) (R t + 1) / (1 + t^2) without cancellation, d(solid angle) = 4 t / (1 + t^2)^2 dt
-//   dphi.
+//   wi.z = z d (1 - y) (R t + 1) / (1 + t^2), without cancellation,
+//   d(solid angle) = 4 t / (1 + t^2)^2 dt dphi.
 template <class T>
 struct MirrorRim {
   T p, c;

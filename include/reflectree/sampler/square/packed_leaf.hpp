@@ -83,8 +83,7 @@ struct PointInLeafT {
   T height;
 };
 using PointInLeaf = PointInLeafT<float>;
-// tx, ty in [0, 1] across the leaf. The sum with the corner comes last, where small cells keep their
-// precision.
+// tx, ty in [0, 1] across the leaf. The sum with the corner comes last, where small cells keep their precision.
 template <class T>
 REFLECTREE_INLINE PointInLeafT<T> point_at(const LeafCell<T>& cell, T tx, T ty) {
   const T shape_x = (T(1) - cell.slope_x) + T(2) * cell.slope_x * tx;

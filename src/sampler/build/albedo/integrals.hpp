@@ -23,8 +23,8 @@ struct Integrals {
   double error = 0;                    // the largest
 };
 
-// Integrates T over the square for every viewer, in their frame; all integrals advance together, a batch per
-// round.
+// Integrates T over the square for every viewer, in their frame; all integrals advance together,
+// a batch per round.
 Integrals integrate(const Field& field, const std::vector<Viewer>& viewers, const IntegralOptions& options,
                     const Host& host, Effort& effort);
 

@@ -15,8 +15,7 @@ namespace reflectree::detail {
 
 namespace {
 
-// The table under construction: panels, the integrals at their nodes, and the error that all are content
-// with.
+// The table under construction: panels, the integrals at their nodes, and the error that all are content with.
 class TableBuilder {
  public:
   TableBuilder(const Field& field, float phi_o, const Coordinates& at, float relative_error,
@@ -154,8 +153,8 @@ class TableBuilder {
 
  private:
   static constexpr int deepest = 10;
-  // Of the error, between table and check. The check may be off by half of the error, the one that decides by a
-  // tenth: what is accepted is within the error with them.
+  // Shares of the error by which table and check may differ. The check may be off by half of the error, the one
+  // that decides by a tenth: with these shares what is accepted is within the error.
   static constexpr double doubted = 0.5, accepted = 0.7;
   static constexpr float progress = 0.1f, progress_end = 0.4f;
 

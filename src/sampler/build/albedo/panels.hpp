@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The albedo over theta_o as polynomials on panels: what is integrated at few elevations and looked up at
-// any.
+// The albedo over theta_o as polynomials on panels: what is integrated at few elevations and looked up at any.
 #pragma once
 
 #include <array>
