@@ -26,8 +26,8 @@ using namespace reflectree;
 Direction at(double deg) { return direction_from_angles(float(deg * pi_v<double> / 180), 0.f); }
 
 struct Spread {
-  // Relative variance of the weight's target; share of none and of weight 0; relative bias of the mean.
-  double variance = 0, lost = 0, bias = 0;
+  // Relative variance of the weight's target; share of none and of weight 0.
+  double variance = 0, lost = 0;
   double deviation() const { return std::sqrt(variance); }
 };
 Spread spread_of(const AnySampler<Spectrum>& sampler, const Target& target, double deg) {

@@ -9,7 +9,9 @@
 #include <type_traits>
 
 // The hot path of sampling is one function to the optimiser: a call would pass its structs through memory.
-#if defined(__GNUC__) || defined(__clang__)
+// Builds with sanitizers define REFLECTREE_PLAIN_INLINE: what they add to each operation would make of that one
+// function more than a compiler digests in minutes.
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(REFLECTREE_PLAIN_INLINE)
 #define REFLECTREE_INLINE [[gnu::always_inline]] inline
 #define REFLECTREE_INLINE_LAMBDA __attribute__((always_inline))
 #define REFLECTREE_NOINLINE [[gnu::noinline]]
