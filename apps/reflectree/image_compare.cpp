@@ -81,7 +81,7 @@ void add_image_compare(CLI::App& app, Context& context, Run& run) {
       ->type_name("FILE");
   command->add_option("--exposure", o->eye.exposure, "Stops by which both are brightened for FLIP")
       ->type_name("EV");
-  command->add_option("--ppd", o->eye.pixels_per_degree, "Pixels a degree on FLIP's screen")
+  command->add_option("--ppd", o->eye.pixels_per_degree, "Pixels per degree on FLIP's screen")
       ->check(CLI::Range(1., 999.).description(""))
       ->capture_default_str()
       ->type_name("X");

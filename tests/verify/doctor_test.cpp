@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The doctor names every planted fault, and says nothing of sound samplers: a few of both always, all of them in
-// the statistical tier, a thousand runs in the long one.
+// The doctor names every planted fault, and says nothing of sound samplers: a few of both always; all of them, and
+// a thousand runs, in the long tier.
 #include <gtest/gtest.h>
 
 #include <cstdio>
