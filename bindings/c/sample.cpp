@@ -113,7 +113,8 @@ reflectree_status reflectree_sample_exact(const reflectree_sampler* s, size_t n,
                                           float* weight) {
   return at_border([&] {
     constexpr const char* where = "reflectree_sample_exact";
-    sample_by_bits(checked(s, where, "s"), s->sampler.exact, n, wo, bits, state, wi, pdf, weight, where);
+    const reflectree_sampler& known = checked(s, where, "s");
+    sample_by_bits(known, known.sampler.exact, n, wo, bits, state, wi, pdf, weight, where);
   });
 }
 
@@ -122,7 +123,8 @@ reflectree_status reflectree_sample_one_shot(const reflectree_sampler* s, size_t
                                              float* weight) {
   return at_border([&] {
     constexpr const char* where = "reflectree_sample_one_shot";
-    sample_by_bits(checked(s, where, "s"), s->sampler.one_shot, n, wo, bits, state, wi, pdf, weight, where);
+    const reflectree_sampler& known = checked(s, where, "s");
+    sample_by_bits(known, known.sampler.one_shot, n, wo, bits, state, wi, pdf, weight, where);
   });
 }
 

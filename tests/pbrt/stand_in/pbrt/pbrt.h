@@ -37,7 +37,8 @@ struct RGB {
 struct RGBColorSpace {
   static const RGBColorSpace* sRGB;
 };
-inline const RGBColorSpace* RGBColorSpace::sRGB = nullptr;
+inline const RGBColorSpace srgb{};
+inline const RGBColorSpace* RGBColorSpace::sRGB = &srgb;
 struct SampledWavelengths {};
 struct SampledSpectrum {
   Float values[3];
