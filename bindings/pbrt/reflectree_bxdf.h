@@ -57,7 +57,7 @@ class ReflectreeBxDF {
             return {};
         const Direction known = Front(wo);
         Direction drawn;
-        float pdf, weight[3];
+        float pdf, weight[3] = {};  // of one channel, the others stay 0
         if (mode_ == ReflectreeMode::Monotone) {
             // A float's steps of 2^-24 are filled from uc: small leaves get their whole share.
             const double points[2] = {double(u[0]) + double(uc) * 0x1p-24, double(u[1])};

@@ -51,13 +51,20 @@ void expect_same(const S& sampler, const std::vector<Direction>& wo, std::size_t
   }
 }
 
+// Null where it fails.
+reflectree_sampler* dust_sampler() {
+  reflectree_function* f = nullptr;
+  reflectree_sampler* s = nullptr;
+  EXPECT_EQ(reflectree_function_callback("lambda", 1, REFLECTREE_CONCURRENT, dust_in_c, nullptr, nullptr, &f),
+            REFLECTREE_OK);
+  EXPECT_EQ(reflectree_build(f, nullptr, &s), REFLECTREE_OK) << reflectree_last_error();
+  reflectree_function_free(f);
+  return s;
+}
+
 TEST(CInterface, GivesTheBitsOfTheSamplers) {
   const auto ours = make_sampler(dust);
-  reflectree_function* f;
-  reflectree_sampler* s;
-  ASSERT_EQ(reflectree_function_callback("lambda", 1, REFLECTREE_CONCURRENT, dust_in_c, nullptr, nullptr, &f),
-            REFLECTREE_OK);
-  ASSERT_EQ(reflectree_build(f, nullptr, &s), REFLECTREE_OK) << reflectree_last_error();
+  reflectree_sampler* s = dust_sampler();
   const std::vector<Direction> wo = viewers(5000);
   expect_same(ours.exact, wo, 1, [&](auto w, auto random, auto wi, auto pdf, auto weight) {
     return reflectree_sample_exact(s, wo.size(), w, reflectree_pcg32_next, random, wi, pdf, weight);
@@ -82,17 +89,13 @@ TEST(CInterface, GivesTheBitsOfTheSamplers) {
     ASSERT_EQ(sample ? sample->pdf : 0, pdf[i]);
     ASSERT_EQ(sample ? sample->wi : Direction{}, (Direction{wi[3 * i], wi[3 * i + 1], wi[3 * i + 2]}));
   }
-  reflectree_function_free(f), reflectree_sampler_free(s);
+  reflectree_sampler_free(s);
 }
 
 // One viewer per call: the bits of `sample`, and "no sample" as zeros.
 TEST(CInterface, DrawsOneByOneAsTheSamplersDo) {
   const auto ours = make_sampler(dust);
-  reflectree_function* f;
-  reflectree_sampler* s;
-  ASSERT_EQ(reflectree_function_callback("lambda", 1, REFLECTREE_CONCURRENT, dust_in_c, nullptr, nullptr, &f),
-            REFLECTREE_OK);
-  ASSERT_EQ(reflectree_build(f, nullptr, &s), REFLECTREE_OK) << reflectree_last_error();
+  reflectree_sampler* s = dust_sampler();
   Pcg32 u(9, 2);
   reflectree_pcg32 random;
   reflectree_pcg32_seed(&random, 9, 2);
@@ -116,7 +119,7 @@ TEST(CInterface, DrawsOneByOneAsTheSamplersDo) {
     const auto descended = ours.one_shot.sample(w, points[0], points[1]);
     expect(descended, reflectree_sample_uniforms(s, 1, known, points, wi, &pdf, &weight));
   }
-  reflectree_function_free(f), reflectree_sampler_free(s);
+  reflectree_sampler_free(s);
 }
 
 int throwing(void* user, size_t, const float*, const float*, float*) {

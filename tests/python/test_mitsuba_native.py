@@ -96,6 +96,27 @@ def test_materials_of_ours():
     assert np.allclose(values, expected.eval(wo, wi, cosine=True), rtol=1e-5)
 
 
+def test_a_bsdf_of_python_with_eval_alone():
+    """Its eval is called by the threads that build, while Python waits for them."""
+    class Dust(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            self.m_flags = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
+            self.m_components = [self.m_flags]
+
+        def eval(self, context, si, wo, active=True):
+            above = si.wi.z > 0 and wo.z > 0
+            return mi.Color3f(0.3 / (si.wi.z + wo.z) * wo.z if above else 0)
+
+        def to_string(self):
+            return "Dust[]"
+
+    mi.register_bsdf("dust_of_the_test", lambda props: Dust(props))
+    bsdf = load({"type": "reflectree", "cache": "none", "nested": {"type": "dust_of_the_test"}})
+    drawn, weight = bsdf.sample(mi.BSDFContext(), interaction([0.6, 0, 0.8]), 0.3, [0.4, 0.7])
+    assert np.allclose(np.array(weight) * drawn.pdf, 0.3 / (0.8 + drawn.wo.z) * drawn.wo.z, rtol=1e-5)
+
+
 @pytest.mark.parametrize("given, sentence", [
     ({}, "0 functions"),
     ({"material": "lambert", "file": "x.bsdf"}, "2 functions"),
