@@ -5,7 +5,12 @@
     PYTHONPATH=build/python python bench/mitsuba/plugin.py [chi2] [table] [pictures] [loads] > report.md
 
 Needs mitsuba and numpy; LLVM variants need LLVM 16 or later (DRJIT_LIBLLVM_PATH). REFLECTREE_DATA names the folder of
-measured files; without it they are left out, with a sentence."""
+measured files; without it they are left out, with a sentence.
+
+    VARIANT=scalar_rgb NATIVE=build-mitsuba PYTHONPATH=build/python python bench/mitsuba/plugin.py chi2 pictures
+
+judges the native plug-in in the folder NATIVE instead: its samples are drawn one by one in the scalar variant, and
+judged by the same test."""
 
 import glob
 import os
@@ -20,11 +25,15 @@ VARIANT = os.environ.get("VARIANT", "llvm_ad_rgb")
 mi.set_variant(VARIANT)
 mi.set_log_level(mi.LogLevel.Error)
 import reflectree as rt  # noqa: E402
-import reflectree.mitsuba  # noqa: E402
+NATIVE = os.environ.get("NATIVE")
+if NATIVE:  # both plug-ins have the same name
+    mi.file_resolver().prepend(NATIVE)
+else:
+    import reflectree.mitsuba  # noqa: E402
 from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain  # noqa: E402
 
 ANGLES = (0, 30, 60, 80, 85)
-CACHE = os.environ.get("REFLECTREE_MITSUBA_CACHE", "")
+CACHE = os.environ.get("REFLECTREE_MITSUBA_CACHE", "none" if NATIVE else "")
 ONLY = os.environ.get("REFLECTREE_RGL", "").split(",")  # parts of names of measured files
 RGL = [path for path in sorted(glob.glob(os.path.join(os.environ.get("REFLECTREE_DATA", "-"), "rgl", "*.bsdf")))
        if any(part in os.path.basename(path) for part in ONLY)]
@@ -111,12 +120,47 @@ class TiltedDomain(SphericalDomain):
         return super().map_backward(mi.Vector3f(w.x * self.C - w.z * self.S, w.y, w.z * self.C + w.x * self.S))
 
 
-def judged(description, degrees, count, finest=128):
+class Scalar:
+    """Calls one by one in the scalar variant; the judge needs another variant, which is set meanwhile. turn: a fault,
+    in degrees of azimuth."""
+
+    def __init__(self, description, wi, turn=0.0):
+        self.bsdf, self.context, self.vector = mi.load_dict(description), mi.BSDFContext(), mi.Vector3f
+        self.si = mi.SurfaceInteraction3f()
+        self.si.t, self.si.wi, self.si.n = 1, mi.Vector3f(wi), mi.Normal3f(0, 0, 1)
+        self.si.sh_frame = mi.Frame3f(mi.Vector3f(0, 0, 1))
+        c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+        self.turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+    def sample(self, u):
+        wo, alive = [], []
+        for a, b, c in np.array(u).T.tolist():
+            drawn, weight = self.bsdf.sample(self.context, self.si, a, [b, c])
+            wo.append((drawn.wo.x, drawn.wo.y, drawn.wo.z))
+            alive.append(any(weight))
+        return mi.Vector3f((np.array(wo) @ self.turn).T.astype(np.float32)), mi.Float(np.array(alive, dtype=np.float32))
+
+    def pdf(self, wo):
+        values = [self.bsdf.pdf(self.context, self.si, self.vector(w)) for w in np.array(wo).T.tolist()]
+        return mi.Float(np.array(values, dtype=np.float32))
+
+
+def patient(description, degrees, turn=0.0):
+    """(sample, pdf) for the judge."""
+    if not VARIANT.startswith("scalar"):
+        return BSDFAdapter(description["type"], description, wi=direction(degrees))
+    mi.set_variant(VARIANT)
+    one_by_one = Scalar(description, direction(degrees), turn)
+    mi.set_variant(VARIANT.replace("scalar", "llvm_ad"))
+    return one_by_one.sample, one_by_one.pdf
+
+
+def judged(description, degrees, count, finest=128, turn=0.0):
     """(accepted, text) of mitsuba.chi2.ChiSquareTest. What is rejected is judged again by finer trapezoids for the
     expected counts, of the same samples: their error goes away, a fault stays."""
     ires = 4
     while True:
-        sample, pdf = BSDFAdapter(description["type"], description, wi=direction(degrees))
+        sample, pdf = patient(description, degrees, turn)
         test = ChiSquareTest(SphericalDomain() if degrees else TiltedDomain(), sample, pdf, sample_dim=3, ires=ires)
         accepted = test.run(test_count=count, quiet=True)
         if accepted or ires >= finest:
@@ -141,6 +185,35 @@ def chi2_table(title, materials):
             "has none" if own is None else f"{sum(own)} of {len(own)}")
     print(f"\n{all_passed} of {count} pass with ours; of Mitsuba's own samplers {own_failed} do not pass up to (16).")
     return all_passed == count
+
+
+def scalar_faults():
+    row("fault, principled 0.6 at 60°", "verdict", "p or sum")
+    row("---", "---", "---:")
+    right = True
+    for turn in (0, 2):
+        accepted, text = judged(ours(MATERIALS["principled 0.6"]), 60, 1, 16, turn)
+        right &= accepted == (turn == 0)
+        row(f"directions are {turn}° off in azimuth", "accepted" if accepted else "rejected", text)
+    return right
+
+
+def scalar_chi2():
+    """Nested BSDFs that are isotropic, since the build calls them one by one; anisotropic ones by our materials."""
+    isotropic = {k: ours(v) for k, v in {**MATERIALS, **NARROW, **MEASURED}.items() if "×" not in k and "aniso" not in k}
+    materials = {**isotropic, **{f"material {m}{mode and ', exact'}": {"type": "reflectree", "material": m, **mode}
+                                 for m in ("ggx:alpha_x=0.25,alpha_y=0.5", "plastic:alpha=0.3")
+                                 for mode in ({}, {"mode": "exact"})}}
+    print()
+    good = scalar_faults()
+    print()
+    row("material", *(f"{a}°" for a in ANGLES), "passed")
+    row("---", *["---:"] * len(ANGLES), "---")
+    for name, description in materials.items():
+        found = [judged(description, a, len(materials) * len(ANGLES), 64) for a in ANGLES]
+        good &= all(ok for ok, _ in found)
+        row(name, *(text for _, text in found), f"{sum(ok for ok, _ in found)} of {len(found)}")
+    return good
 
 
 def faults():
@@ -180,6 +253,8 @@ def chi2():
     wide = dict(MATERIALS)
     if not MEASURED:
         print("\nREFLECTREE_DATA names no folder with rgl/*.bsdf: measured materials are left out.")
+    if NATIVE:
+        return scalar_chi2()
     good = faults()
     good &= chi2_table("Wide lobes", wide)
     return chi2_table("Narrow lobes and measured ones", {**NARROW, **MEASURED}) and good

@@ -123,6 +123,8 @@ TEST(QuickDoctor, RefusesWhatItCannotExamine) {
 TEST(Doctor, SaysNothingOfAnySoundOne) {
   every(catalogue::sound(), 1, [](const Entry& e) { expect_sound(e.name, e.make()); });
 }
+// Of this density's steps the first cubature misses 0.17 % at 70 degrees, and estimates 0.03 %.
+TEST(Doctor, SaysNothingOfStepsThatDeceiveACubature) { expect_sound("a table", catalogue::of_table(), 164); }
 TEST(Doctor, NamesEveryFourthFault) { every(catalogue::faults(), 4, expect_named); }
 TEST(WholeDoctor, NamesEveryFault) {
   EXPECT_GE(catalogue::faults().size(), 50u);
@@ -153,7 +155,7 @@ TEST(LongDoctor, GivesNoFalseAlarmInAThousandRuns) {
   for (const Entry& e : catalogue::sound()) all.emplace_back(e.name, e.make());
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const auto& [name, p] = all[seed % all.size()];
-    expect_sound(name, p, seed);
+    expect_sound(name, p, seed, p.pdf ? 30 : 20);
   }
 }
 

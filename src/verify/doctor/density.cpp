@@ -76,8 +76,7 @@ DensityVerdict judge_density(const Functions& f, std::span<const ExaminedView> v
                   lost);
     // Draws below the horizon that carry a weight are told of by themselves.
     const CheckResult integral =
-        limited("pdf_integral", std::abs(view.pdf_integral + lost + view.below / view.draws - 1),
-                integral_tolerance(view, z), detail, view.where);
+        limited("pdf_integral", std::abs(unaccounted(view)), integral_tolerance(view, z), detail, view.where);
     const Fit fit = fit_of(view, view.pdf_mass, true);
     CheckResult shape = limited("chi_square_pdf", fit.statistic, 0, "", view.where);
     std::snprintf(detail, sizeof detail, "%.0f bins, level %.2g", fit.dof + 1, level);

@@ -41,6 +41,8 @@ struct Fit {
 // Directions against masses per bin; lost draws against what the masses leave out,
 // unless the shape alone counts.
 Fit fit_of(const DoctorView& view, std::span<const double> mass, bool shape_alone = false);
+// Integral of pdf + share of draws that are lost or below the horizon - 1.
+double unaccounted(const ExaminedView& view);
 // How far integral + lost share may be from 1, at z standard deviations of that share.
 double integral_tolerance(const ExaminedView& view, double z);
 
