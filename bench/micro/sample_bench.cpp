@@ -89,6 +89,21 @@ void one_shot_monotone(benchmark::State& state) {
 }
 BENCHMARK(one_shot_monotone)->Arg(300)->Arg(100)->Arg(10);
 
+const Sampler<Ggx>& brushed() {
+  static const auto sampler = make_sampler(Ggx{Widths{0.05f, 0.3f}});
+  return sampler;
+}
+void anisotropic_exact(benchmark::State& state) {
+  const auto& sampler = brushed().exact;
+  run(state, [&](Direction wo, Pcg32& u) { return gathered(sampler.sample(wo, u)); });
+}
+BENCHMARK(anisotropic_exact);
+void anisotropic_one_shot_alias(benchmark::State& state) {
+  const auto& sampler = brushed().one_shot;
+  run(state, [&](Direction wo, Pcg32& u) { return gathered(sampler.sample(wo, u)); });
+}
+BENCHMARK(anisotropic_one_shot_alias);
+
 // Every sample is one of another member of the family, as under a texture.
 const FamilySampler<ModelFamily<Ggx>>& family() {
   static const auto sampler = make_sampler(model_family(Ggx{}, {{"alpha", 0.02f, 1}}));
@@ -134,6 +149,17 @@ void one_shot_alias_batch(benchmark::State& state) {
   run_batches(state, [&](auto wo, Pcg32& u, auto out) { sample_batch(sampler, wo, u, out); });
 }
 BENCHMARK(one_shot_alias_batch)->Arg(300)->Arg(100)->Arg(10);
+
+void anisotropic_exact_batch(benchmark::State& state) {
+  const auto& sampler = brushed().exact;
+  run_batches(state, [&](auto wo, Pcg32& u, auto out) { sample_batch(sampler, wo, u, out); });
+}
+BENCHMARK(anisotropic_exact_batch);
+void anisotropic_one_shot_alias_batch(benchmark::State& state) {
+  const auto& sampler = brushed().one_shot;
+  run_batches(state, [&](auto wo, Pcg32& u, auto out) { sample_batch(sampler, wo, u, out); });
+}
+BENCHMARK(anisotropic_one_shot_alias_batch);
 
 void one_shot_monotone_batch(benchmark::State& state) {
   const auto& sampler = ggx(float(state.range(0)) * 1e-3f).one_shot;

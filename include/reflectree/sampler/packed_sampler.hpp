@@ -47,7 +47,7 @@ REFLECTREE_INLINE bool find_incidence_of(const F& f, const PackedSampler& packed
   if constexpr (is_member_v<F>) {
     return find_incidence(packed.viewer, wo, f.at, out, needs_albedo);
   } else {
-    return find_incidence(packed.viewer, wo, out);
+    return find_incidence(packed.viewer, wo, out, needs_albedo);
   }
 }
 template <class F>

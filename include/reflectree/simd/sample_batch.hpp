@@ -47,7 +47,7 @@ REFLECTREE_INLINE void add_by_alias(const F& f, const PackedSampler& packed, con
                                     const NoSample& no_sample) {
   for (; i < wo.size() && !block.full(); ++i) {
     Incidence in;
-    if (!find_incidence_of(f, packed, wo[i], in)) {
+    if (!find_incidence_of(f, packed, wo[i], in, false)) {
       no_sample(i);
       continue;
     }
@@ -76,7 +76,7 @@ REFLECTREE_INLINE void add_by_descent(const F& f, const PackedSampler& packed, c
     std::size_t n = 0;
     for (; i < wo.size() && n < descents_side_by_side; ++i) {
       Started& s = started[n];
-      if (!are_uniforms(points[i].x, points[i].y) || !find_incidence_of(f, packed, wo[i], s.in)) {
+      if (!are_uniforms(points[i].x, points[i].y) || !find_incidence_of(f, packed, wo[i], s.in, false)) {
         no_sample(i);
         continue;
       }

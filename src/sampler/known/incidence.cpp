@@ -37,9 +37,10 @@ void fold_viewer_of_family(const PackedViewer& viewer, Incidence& in, float sin_
   }
 }
 
-void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse) {
+void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse,
+                 bool needs_albedo) {
   fold_viewer_of_family(viewer, in, sin_theta, inverse);
-  in.albedo = viewer.albedo.at(in.wo.z, in.phi_o);
+  in.albedo = needs_albedo || !viewer.albedo.positive ? viewer.albedo.at(in.wo.z, in.phi_o) : 1.f;
 }
 
 }  // namespace reflectree::detail

@@ -143,8 +143,8 @@ PackedAlbedo pack(const AlbedoTable& table) {
   const std::vector<float> values = padded(table);
   for (std::size_t first = 0; first < values.size(); first += columns)
     pack_row(table.cos_theta_o, values.data() + first, packed.pieces);
+  packed.positive = table.parameters.size() + (rows > 0) == 1 && is_positive(values, columns);
   if (table.parameters.empty()) return packed;
-  packed.positive = rows == 0 && table.parameters.size() == 1 && is_positive(values, columns);
   rows = std::max<std::size_t>(rows, 1);
   for (const AlbedoAxis& axis : table.parameters) {
     packed.parameters.push_back({axis.lo, float(axis.rows - 1) / (axis.hi - axis.lo), axis.rows, rows});

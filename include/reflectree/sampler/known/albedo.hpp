@@ -80,7 +80,8 @@ struct PackedAlbedo {
   std::size_t row = 0;            // pieces of one azimuth; of families those of one cos_theta_o
   std::vector<Segment> segments;  // empty for isotropic functions
   std::vector<Axis> parameters = {};
-  bool positive = false;  // of families: known to be 0 nowhere, so that who does not need it need not ask
+  // Of one coordinate beyond theta_o: known to be 0 nowhere, so that who does not need it need not ask.
+  bool positive = false;
 
   float at(float cos_theta_o) const {
     const AlbedoPiece& piece = pieces[lookup(cos_theta_o)];

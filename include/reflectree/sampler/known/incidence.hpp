@@ -14,7 +14,7 @@ struct Incidence {
   Direction known;         // wo as the caller gave it
   Direction wo;            // in the frame of the domain
   float cos_phi, sin_phi;  // of the turn back
-  float albedo;            // a(wo) of the target
+  float albedo;            // a(wo) of the target; not 0 where it was not asked for
   float phi_o = 0;         // of anisotropic functions: the azimuth in the viewer's frame, folded
   float side = 0;          // its sign bit: the frame is mirrored, y turned around, before it is turned
   // Of families: what is known but theta_o, in the order of the partition, with parameters as they were given;
@@ -39,13 +39,16 @@ inline constexpr float unit_length_tolerance = 1e-3f;
 namespace detail {
 // The rest of find_incidence for anisotropic functions, out of the way of all others: wo is folded, and the
 // domain's frame and the albedo follow.
-void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse);
+void fold_viewer(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse,
+                 bool needs_albedo);
 // The same without the albedo, which a family knows by its parameters, too.
 void fold_viewer_of_family(const PackedViewer& viewer, Incidence& in, float sin_theta, float inverse);
 }  // namespace detail
 
-// False is "no sample": wo below or at the horizon, not finite, not of unit length, or albedo 0.
-REFLECTREE_INLINE bool find_incidence(const PackedViewer& viewer, Direction wo, Incidence& out) {
+// False is "no sample": wo below or at the horizon, not finite, not of unit length, or albedo 0. Who does not
+// need the albedo is spared it where it is 0 nowhere, unless it costs next to nothing.
+REFLECTREE_INLINE bool find_incidence(const PackedViewer& viewer, Direction wo, Incidence& out,
+                                      bool needs_albedo = true) {
   const float sin2 = wo.x * wo.x + wo.y * wo.y;
   if (!(wo.z >= min_cos_theta_o && abs(sin2 + wo.z * wo.z - 1) <= unit_length_tolerance)) return false;
   const float sin_theta = sqrt(sin2);
@@ -58,13 +61,12 @@ REFLECTREE_INLINE bool find_incidence(const PackedViewer& viewer, Direction wo, 
     out.sin_phi = wo.y * inverse;
     out.albedo = viewer.albedo.at(cos_theta);
   } else {
-    detail::fold_viewer(viewer, out, sin_theta, inverse);
+    detail::fold_viewer(viewer, out, sin_theta, inverse, needs_albedo);
   }
   return out.albedo > 0;
 }
 
-// Of a family; parameters outside of their ranges are "no sample", too. Who does not need the albedo is spared
-// it where it is 0 nowhere.
+// Of a family; parameters outside of their ranges are "no sample", too.
 inline bool find_incidence(const PackedViewer& viewer, Direction wo, const Parameters& values, Incidence& out,
                            bool needs_albedo = true) {
   const float sin2 = wo.x * wo.x + wo.y * wo.y;
@@ -84,6 +86,7 @@ inline bool find_incidence(const PackedViewer& viewer, Direction wo, const Param
   }
   out.scale_x = viewer.family.x.at(at);
   out.scale_y = viewer.family.round ? out.scale_x : viewer.family.y.at(at);
+  out.albedo = 1;
   if (!needs_albedo && viewer.albedo.positive) return true;
   out.albedo = viewer.albedo.at(out.wo.z, out.phi_o, at);
   return out.albedo > 0;
