@@ -4,11 +4,13 @@
 import pickle
 
 import numpy as np
+import numpy_drjit
 import pytest
 from conftest import directions, ggx
 from test_statistics import LIMIT, cell_masses, cell_of, chi_square_score
 
 import reflectree as rt
+from reflectree._drjit import DrJitSampler
 
 WO = rt.direction(0.9, 0.4)
 N = 100_000
@@ -241,3 +243,12 @@ def test_a_function_of_channels_and_two_parameters():
     assert np.allclose(family.eval(wo, wi, width=0.7, tint=0.4), tinted(wo, wi, 0.7, 0.4), rtol=1e-4)
     drawn = family.sample(wo, width=0.7, tint=0.4, rng=1)
     assert np.allclose(drawn.weight[:, 1], 0.4 * drawn.weight[:, 0], rtol=1e-4)
+    # The same over arrays (test_tables.py): a grid over three coordinates, cubics over two.
+    over_numpy = DrJitSampler(numpy_drjit, numpy_drjit, family.tables(), family.tables("exact"))
+    rng = np.random.default_rng(3)
+    at = {name: rng.uniform(*ends, 50).astype(np.float32) for name, ends in family.ranges.items()}
+    columns = [np.ascontiguousarray(w.T, dtype=np.float32) for w in (wo, wi)]
+    assert np.allclose(over_numpy.pdf(*columns, True, list(at.values())), family.pdf(wo, wi, mode="one-shot", **at),
+                       rtol=1e-3)
+    view = over_numpy.view(columns[0], list(at.values()))
+    assert np.allclose(over_numpy._albedo(view, True) / family.tables().scale, family.albedo(wo, **at), rtol=1e-4)

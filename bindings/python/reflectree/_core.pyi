@@ -99,6 +99,8 @@ class Sampler:
 
 class Family:
     name: str
+    domain: str
+    isotropic: bool
     channels: int
     has_channel_axis: bool
     ranges: Dict[str, Tuple[float, float]]
@@ -168,6 +170,7 @@ class Family:
     def albedo(self, wo: Array, parameters: Array, out: Array) -> None: ...
     def expected_trials(self, wo: Array, parameters: Array, out: Array) -> None: ...
     def member(self, parameters: List[float]) -> Sampler: ...
+    def tables(self, one_shot: bool) -> Dict[str, Any]: ...
     def member_of(self, brdf: Brdf, parameters: List[float]) -> Sampler: ...
 
 # Where has_judges is true.

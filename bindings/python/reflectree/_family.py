@@ -17,6 +17,7 @@ from ._brdf import Brdf, function, material
 from ._error import BuildWarning, Error
 from ._progress import Progress, opened
 from ._sampler import BuildReport, Sampler, _is_one_shot, _made, _scalars, _target
+from ._tables import Tables, tables_of
 
 # Arguments of the methods; a parameter of a function cannot have such a name.
 ARGUMENTS = ("family", "name", "dtype", "target", "expected_trials", "one_shot_variance", "albedo_error", "seed",
@@ -182,6 +183,15 @@ class FamilySampler:
     def nbytes(self) -> int:
         """Bytes of its tables."""
         return int(self._core.nbytes)
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether the builder found that all members depend on azimuths by their difference alone."""
+        return bool(self._core.isotropic)
+
+    def tables(self, mode: str = "one-shot") -> Tables:
+        """The run-time arrays of a mode, read-only: :meth:`Sampler.tables`."""
+        return tables_of(self._core, _is_one_shot(mode))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes a sampler file, whole or not at all; :func:`load_family` reads it, and must be given a function of

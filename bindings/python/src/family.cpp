@@ -284,6 +284,11 @@ void bind_family(nb::module_& m) {
                                                probe_identity(brdf.f, f.data.target)));
           },
           nb::arg("brdf"), nb::arg("parameters"))
+      .def(
+          "tables", [](const PyFamily& f, bool one_shot) { return tables_of(*f.packed, f.data, one_shot); },
+          nb::arg("one_shot"))
+      .def_prop_ro("domain", [](const PyFamily& f) { return std::string(name_of(f.data.domain.kind)); })
+      .def_prop_ro("isotropic", [](const PyFamily& f) { return f.data.frame.isotropic(); })
       .def_prop_ro("name", [](const PyFamily& f) { return f.data.material; })
       .def_prop_ro("channels", [](const PyFamily& f) { return f.family.channels(); })
       .def_prop_ro("has_channel_axis", [](const PyFamily& f) { return width_of(f) > 0; })
