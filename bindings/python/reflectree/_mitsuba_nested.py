@@ -179,12 +179,14 @@ def _refuse_what_else_varies(surface: Surface, textures: VariedTextures, wo: Arr
     u, v = np.random.default_rng(3).random((2, len(wo)), dtype=np.float32)
     place = mi.Point2f(mi.Float(u), mi.Float(v))
     si = surface.interactions(mi.Vector3f(0, 0, 1), len(wo), place)
-    at = {name: np.broadcast_to(np.asarray(x, np.float32), len(wo)) for name, x in zip(textures.ranges, textures.at(si, True))}
+    at = {name: np.broadcast_to(np.asarray(x, np.float32), len(wo))
+          for name, x in zip(textures.ranges, textures.at(si, True))}
     values = surface.cosine_values(wo, wi, place)
     with textures.varied():
         textures.follows(at, surface.interactions(mi.Vector3f(0, 0, 1), len(wo), textures.coordinates(at)))
         members = surface.cosine_values(wo, wi, **at)
-    if not np.allclose(members, values, rtol=2e-3, atol=1e-6 * float(np.max(np.abs(values), initial=0)), equal_nan=True):
+    largest = float(np.max(np.abs(values), initial=0))
+    if not np.allclose(members, values, rtol=2e-3, atol=1e-6 * largest, equal_nan=True):
         raise Error("its values vary over the surface by more than " + " and ".join(textures.ranges), where,
                     "nest a BSDF that has no other textures and no bumps")
 

@@ -31,7 +31,8 @@ def parse_family(text: str, where: str) -> Dict[str, Optional[Tuple[float, float
         except (ValueError, IndexError):
             raise Error(f"{part.strip()!r} is no range", where, "say family alpha=0.02..1, or family alpha") from None
     if "" in found or not 1 <= len(found) <= 2:
-        raise Error(f"family {text!r} names no one or two parameters", where, "say family alpha=0.02..1, or family alpha")
+        raise Error(f"family {text!r} names no one or two parameters", where,
+                    "say family alpha=0.02..1, or family alpha")
     return found
 
 
@@ -47,7 +48,8 @@ class Textures:
         not seen it, is led back to the nearest member: of one-shot mode the density is then that of another member,
         and the weight is right all the same."""
         si = self.dr.detach(si)
-        return tuple(self.dr.clip(self._value(name, si, active), *np.float32(self.ranges[name])) for name in self.ranges)
+        return tuple(self.dr.clip(self._value(name, si, active), float(np.float32(low)), float(np.float32(high)))
+                     for name, (low, high) in self.ranges.items())
 
     def _value(self, name: str, si: Any, active: Any) -> Any:
         texture = self.of[name]
@@ -103,8 +105,8 @@ class Textures:
             least, most = self.found(name)
             room = 1e-5 * (high - low)
             if not (least >= low - room and most <= high + room):
-                raise Error(f"{name} goes from {least:g} to {most:g}, and the family from {low:g} to {high:g}", self.where,
-                            "widen the range, or change the texture")
+                raise Error(f"{name} goes from {least:g} to {most:g}, and the family from {low:g} to {high:g}",
+                            self.where, "widen the range, or change the texture")
 
 
 class VariedTextures(Textures):

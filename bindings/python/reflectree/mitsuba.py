@@ -403,7 +403,12 @@ def _of_ours(texts: Dict[str, str], given: Dict[str, Any]) -> Tuple[Any, AnySamp
         f: Optional[Brdf] = load(texts["file"], texts.get("member", ""))
     else:
         f = material(texts["material"]) if "material" in texts else None
-    sampler = load_sampler(texts["sampler"], f) if "sampler" in texts else _built(lambda: Sampler(f))  # type: ignore[arg-type]
+    if "sampler" in texts:
+        sampler = load_sampler(texts["sampler"], f)
+    else:
+        assert f is not None
+        found = f
+        sampler = _built(lambda: Sampler(found))
     return _Ours(sampler.brdf, "reflectree"), sampler, None
 
 
@@ -411,7 +416,10 @@ def _family_of_ours(texts: Dict[str, str], given: Dict[str, Any]) -> Tuple[Any, 
     if not dr.is_jit_v(mi.Float):
         raise Error("families are there in LLVM variants alone", "reflectree", "use another variant, or a material "
                     "without a range")
-    sampler = load_family(texts["sampler"]) if "sampler" in texts else _built(lambda: FamilySampler(texts["material"]))
+    if "sampler" in texts:
+        sampler = load_family(texts["sampler"])
+    else:
+        sampler = _built(lambda: FamilySampler(texts["material"]))
     where = f"reflectree of {sampler.name}"
     for name in given:
         if name not in sampler.ranges:
