@@ -273,18 +273,20 @@ def test_pictures_of_materials_of_ours(llvm):
     assert mean_z2(pictures({"type": "diffuse", "reflectance": 0.5}, 1001), ours) < 1.5
 
 
+def gradient(bsdf, key):
+    """Of the mean of a picture, by a parameter."""
+    scene = ball(bsdf, 8)
+    parameters = mi.traverse(scene)
+    key = next(k for k in parameters.keys() if k.endswith(key))
+    dr.enable_grad(parameters[key])
+    parameters.update()
+    integrator = mi.load_dict({"type": "prb", "max_depth": 3})
+    dr.backward(dr.mean(mi.render(scene, parameters, integrator=integrator, spp=512), axis=None))
+    return np.array(dr.grad(parameters[key])).reshape(-1)
+
+
 @needs_llvm
 def test_evaluation_is_differentiated_and_sampling_is_not(llvm, cache):
-    def gradient(bsdf, key):
-        scene = ball(bsdf, 8)
-        parameters = mi.traverse(scene)
-        key = next(k for k in parameters.keys() if k.endswith(key))
-        dr.enable_grad(parameters[key])
-        parameters.update()
-        integrator = mi.load_dict({"type": "prb", "max_depth": 3})
-        dr.backward(dr.mean(mi.render(scene, parameters, integrator=integrator, spp=512), axis=None))
-        return np.array(dr.grad(parameters[key])).reshape(-1)
-
     theirs = gradient(PRINCIPLED, "base_color.value")
     ours = gradient({"type": "reflectree", "nested": PRINCIPLED, "cache": cache}, "base_color.value")
     assert np.all(theirs > 0) and np.allclose(ours, theirs, rtol=0.05)
@@ -425,6 +427,49 @@ def test_a_family_follows_its_texture(llvm, cache, bitmap):
 
 
 @needs_llvm
+def test_a_texture_is_differentiated(llvm, cache, bitmap):
+    theirs, ours = (np.sum(gradient(bsdf, "alpha.data")) for bsdf in (rough(bitmap), textured(bitmap, cache)))
+    assert abs(theirs) > 1e-3 and np.isclose(ours, theirs, rtol=0.1)
+
+
+@needs_llvm
+def test_two_textures_are_set_for_every_lane(llvm, bitmap):
+    from reflectree._mitsuba_nested import Surface, parameters_of
+    from reflectree._mitsuba_textures import VariedTextures
+
+    def blend(alpha_u, alpha_v):
+        return mi.load_dict({"type": "blendbsdf", "weight": 0.5, "a": {"type": "diffuse"}, "b": {
+            "type": "roughconductor", "alpha_u": alpha_u, "alpha_v": alpha_v}})
+
+    scaled = {**bitmap, "to_uv": mi.ScalarTransform3f().scale([2, 1])}
+    nested = blend(bitmap, {"type": "checkerboard", "color0": scaled, "color1": 0.3})
+    u, v = "bsdf_1.alpha_u", "bsdf_1.alpha_v"
+    textures = VariedTextures(mi, dr, nested, [u, v], "")
+    textures.set_ranges({u: None, v: (0.1, 1.5)})
+    textures.check()
+    assert textures.ranges == {u: (0.2, 0.6), v: (0.1, 1.5)} and not any(k.startswith(u) for k in textures.others())
+    surface = Surface(mi, dr, nested, textures)
+    others, n, rng = parameters_of(surface), 12, np.random.default_rng(1)
+    at = {name: rng.uniform(*ends, n).astype(np.float32) for name, ends in textures.ranges.items()}
+    wo = rt.direction(rng.uniform(0, 1.2, n), rng.uniform(0, 6, n)).astype(np.float32)
+    wi = rt.direction(rng.uniform(0, 1.2, n), rng.uniform(0, 6, n)).astype(np.float32)
+    before = surface.cosine_values(wo, wi, 0.3)
+    with textures.varied():
+        values = surface.cosine_values(wo, wi, **at)
+        with pytest.raises(rt.Error, match="another family"):
+            with VariedTextures(mi, dr, nested, [u], "").varied():
+                pass
+    assert np.array_equal(surface.cosine_values(wo, wi, 0.3), before) and parameters_of(surface) == others
+    expected = np.concatenate([Surface(mi, dr, blend(float(at[u][k]), float(at[v][k]))).cosine_values(
+        wo[k:k + 1], wi[k:k + 1]) for k in range(n)])
+    assert np.allclose(values, expected, rtol=1e-4)
+    assert not np.allclose(values, np.roll(expected, 1, axis=0), rtol=0.1)  # the twin
+    shared = blend(bitmap, {"type": "checkerboard", "color0": bitmap, "color1": 0.3})  # Mitsuba makes one of the two
+    with pytest.raises(rt.Error, match="share a texture"):
+        VariedTextures(mi, dr, shared, [u, v], "")
+
+
+@needs_llvm
 def test_families_are_kept_and_found(llvm, bitmap, tmp_path):
     first = mi.load_dict(textured(bitmap, str(tmp_path)))
     assert first.sampler.build_seconds is not None
@@ -435,7 +480,11 @@ def test_families_are_kept_and_found(llvm, bitmap, tmp_path):
     (path,) = tmp_path.iterdir()
     named = {"type": "reflectree", "family": "alpha=0.15..0.7", "sampler": str(path)}
     assert mi.load_dict({**named, "nested": rough(bitmap)}).sampler.build_seconds is None
-    with pytest.raises(RuntimeError, match="other ranges|another BRDF"):
+    for family, alpha, sentence in (("alpha", bitmap, "the sampler is of alpha=0.15..0.7"),
+                                    ("eta=0..1", 0.3, "the sampler is of alpha, and family names eta")):
+        with pytest.raises(RuntimeError, match=sentence):
+            mi.load_dict({**named, "family": family, "nested": rough(alpha)})
+    with pytest.raises(RuntimeError, match="another BRDF"):
         mi.load_dict({**named, "nested": {**rough(bitmap), "distribution": "beckmann"}})
 
 

@@ -123,6 +123,7 @@ def family_of(surface: Surface) -> Callable[..., Array]:
 
     def values(wo: Array, wi: Array, **at: Array) -> Array:
         assert surface.textures
+        surface.textures.check_named(at)
         with surface.textures.varied():
             f: Array = np.abs(surface.cosine_values(wo, wi, **at)) / wi[:, 2:]
         return f

@@ -9,7 +9,8 @@ coordinates choose its value."""
 from __future__ import annotations
 
 import contextlib
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
+import threading
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from ._error import Error
 
 Ranges = Dict[str, Tuple[float, float]]
 CHUNK = 1 << 22  # texels that are asked at once
+BUILDING = threading.RLock()
+CHANGED: Set[Any] = set()  # leaves that hold something else for a while
 
 
 def parse_family(text: str, where: str) -> Dict[str, Optional[Tuple[float, float]]]:
@@ -108,6 +111,17 @@ class Textures:
                 raise Error(f"{name} goes from {least:g} to {most:g}, and the family from {low:g} to {high:g}",
                             self.where, "widen the range, or change the texture")
 
+    def check_named(self, at: Dict[str, Any]) -> None:
+        if set(at) != set(self.ranges):
+            raise Error(f"the sampler is of {' and '.join(at)}, and family names {' and '.join(self.ranges)}", self.where,
+                        "name the sampler's parameters")
+
+    def check_served(self, ranges: Ranges, sampler: str) -> None:
+        """Raises Error unless a sampler's ranges are those that were asked for."""
+        if list(ranges) != list(self.ranges) or not np.allclose(list(ranges.values()), list(self.ranges.values()), 1e-6):
+            text = ",".join(f"{name}={low:g}..{high:g}" for name, (low, high) in ranges.items())
+            raise Error(f"the sampler is of {text}", sampler, f"say family {text}, or leave the sampler out")
+
 
 class VariedTextures(Textures):
     """Those of a nested BSDF."""
@@ -117,6 +131,11 @@ class VariedTextures(Textures):
         self._leaves = {name: _leaves_of(self._parameters, name, where) for name in names}
         super().__init__(mi, dr, {name: _texture_named(self._parameters, name, leaves[0])
                                   for name, leaves in self._leaves.items()}, where)
+        nodes = [{self._parameters.properties[key][2] for key in leaves} for leaves in self._leaves.values()]
+        if len(nodes) > 1 and nodes[0] & nodes[1]:
+            raise Error(f"{' and '.join(names)} share a texture, which has one value at a time: Mitsuba makes one of equal "
+                        "textures", where, "give them textures that differ, or vary one of the two")
+        self._nodes = set().union(*nodes)
         self._tops: Dict[str, float] = {}
         self._is_varied = False
 
@@ -131,7 +150,21 @@ class VariedTextures(Textures):
         if self._is_varied:
             yield
             return
-        self._is_varied = True
+        with BUILDING:  # equal textures of a scene are one, and scenes are loaded by several threads
+            if self._nodes & CHANGED:
+                raise Error("its texture belongs to another family, too, which is being built at this moment", self.where,
+                            "load the scene with parallel=False")
+            CHANGED.update(self._nodes)
+            self._is_varied = True
+            try:
+                with self._changed():
+                    yield
+            finally:
+                self._is_varied = False
+                CHANGED.difference_update(self._nodes)
+
+    @contextlib.contextmanager
+    def _changed(self) -> Iterator[None]:
         before: Dict[str, Any] = {}
         try:
             for axis, (name, (_, high)) in enumerate(self.ranges.items()):
@@ -148,7 +181,6 @@ class VariedTextures(Textures):
             self._parameters.update()
             yield
         finally:
-            self._is_varied = False
             for key, value in before.items():
                 self._set(key, value)
                 self._parameters.set_dirty(key)
@@ -158,7 +190,7 @@ class VariedTextures(Textures):
         """Inside varied(): the texture coordinates at which the parameters have these values, and uniform leaves set
         to them."""
         mi = self.mi
-        uv = [0.5, 0.5]
+        uv: List[Any] = [0.5, 0.5]
         for axis, name in enumerate(self.ranges):
             values = np.ascontiguousarray(at[name], dtype=np.float32)
             uv[axis] = 0.25 + 0.5 * values.astype(np.float64) / self._tops[name]

@@ -194,18 +194,21 @@ def _found_or_built(surface: Surface, texts: Dict[str, str]) -> AnySampler:
     """From its file where there is one."""
     exact = texts["mode"] == "exact"
     if surface.textures:
-        as_family: Dict[str, Any] = {"name": "a BSDF of Mitsuba", "dtype": np.float32}
-        family, ranges = family_of(surface), surface.textures.ranges
-        load_it: Callable[[Any], AnySampler] = lambda path: load_family(path, family, **as_family)  # noqa: E731
-        # One-shot mode draws nothing from the trees of exact mode, which cost most.
-        options = {} if exact else {"expected_trials": 2.0, "albedo_error": 1e-3}
-        build: Callable[[], AnySampler] = lambda: FamilySampler(  # noqa: E731
-            family, **as_family, **options, **ranges)
+        family = family_of(surface)
+        as_function: Dict[str, Any] = {"name": "a BSDF of Mitsuba", "dtype": np.float32}
+        options: Dict[str, Any] = {**as_function, **surface.textures.ranges}
+        if not exact:  # one-shot mode draws nothing from the trees of exact mode, which cost most
+            options.update(expected_trials=2.0, albedo_error=1e-3)
+        load_it: Callable[[Any], AnySampler] = lambda path: load_family(path, family, **as_function)  # noqa: E731
+        build: Callable[[], AnySampler] = lambda: FamilySampler(family, **options)  # noqa: E731
     else:
         f = brdf_of(surface)
         load_it, build = lambda path: load_sampler(path, f), lambda: Sampler(f)  # noqa: E731
     if "sampler" in texts:
-        return load_it(texts["sampler"])
+        found = load_it(texts["sampler"])
+        if surface.textures and isinstance(found, FamilySampler):
+            surface.textures.check_served(found.ranges, texts["sampler"])
+        return found
     folder = _cache_folder(texts.get("cache", ""))
     options_text = __version__ + (" exact" if surface.textures and exact else "")
     path = folder / (identity_of(surface, options_text) + ".rfl") if folder else None
