@@ -465,8 +465,29 @@ def test_two_textures_are_set_for_every_lane(llvm, bitmap):
     assert np.allclose(values, expected, rtol=1e-4)
     assert not np.allclose(values, np.roll(expected, 1, axis=0), rtol=0.1)  # the twin
     shared = blend(bitmap, {"type": "checkerboard", "color0": bitmap, "color1": 0.3})  # Mitsuba makes one of the two
-    with pytest.raises(rt.Error, match="share a texture"):
-        VariedTextures(mi, dr, shared, [u, v], "")
+    textures = VariedTextures(mi, dr, shared, [u, v], "")
+    textures.set_ranges({u: None, v: (0.1, 1.5)})
+    with textures.varied(), pytest.raises(rt.Error, match="another parameter has the same one"):
+        textures.follows(at, surface.interactions(mi.Vector3f(0, 0, 1), n, textures.coordinates(at)))
+
+
+@needs_llvm
+def test_two_families_of_one_texture_in_a_scene(llvm, cache, bitmap):
+    bsdfs = [textured(bitmap, cache), textured(bitmap, cache, uniforms="monotone")]
+    scene = mi.load_dict({"type": "scene", **{f"ball_{k}": {"type": "sphere", "bsdf": b} for k, b in enumerate(bsdfs)}})
+    parameters = mi.traverse(scene)
+    data = [np.asarray(parameters[key])[0, :, 0] for key in parameters.keys() if key.endswith("alpha.data")]
+    assert data and all(np.allclose(d, np.linspace(0.2, 0.6, 5)) for d in data)
+
+
+@needs_llvm
+def test_a_family_in_xml(llvm, cache, bitmap):
+    bsdf = mi.load_string(f"""<bsdf version="3.0.0" type="reflectree">
+        <string name="family" value="alpha=0.15..0.7"/><string name="cache" value="{cache}"/>
+        <bsdf type="roughconductor"><string name="distribution" value="ggx"/>
+          <texture name="alpha" type="bitmap"><string name="filename" value="{bitmap["filename"]}"/>
+            <boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/></texture></bsdf></bsdf>""")
+    assert np.allclose(bsdf.sampler.ranges["alpha"], (0.15, 0.7)) and "FamilySampler" in str(bsdf)
 
 
 @needs_llvm

@@ -131,11 +131,7 @@ class VariedTextures(Textures):
         self._leaves = {name: _leaves_of(self._parameters, name, where) for name in names}
         super().__init__(mi, dr, {name: _texture_named(self._parameters, name, leaves[0])
                                   for name, leaves in self._leaves.items()}, where)
-        nodes = [{self._parameters.properties[key][2] for key in leaves} for leaves in self._leaves.values()]
-        if len(nodes) > 1 and nodes[0] & nodes[1]:
-            raise Error(f"{' and '.join(names)} share a texture, which has one value at a time: Mitsuba makes one of equal "
-                        "textures", where, "give them textures that differ, or vary one of the two")
-        self._nodes = set().union(*nodes)
+        self._nodes = {self._parameters.properties[key][2] for leaves in self._leaves.values() for key in leaves}
         self._tops: Dict[str, float] = {}
         self._is_varied = False
 
@@ -205,8 +201,8 @@ class VariedTextures(Textures):
             taken = np.asarray(self.of[name].eval_1(si), dtype=np.float64)
             if not np.allclose(np.broadcast_to(taken, len(values)), values, rtol=1e-4, atol=1e-6):
                 raise Error(f"the texture of {name} cannot be set to given values: it is neither a bitmap with a linear "
-                            "filter, nor uniform, nor a checkerboard of these", self.where,
-                            "use such a texture, or nest a BSDF without textures")
+                            "filter, nor uniform, nor a checkerboard of these, or another parameter has the same one", self.where,
+                            "use such a texture; textures that are equal are one to Mitsuba, and must differ")
 
     def _copy(self, key: str) -> Any:
         value = self._parameters[key]
