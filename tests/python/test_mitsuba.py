@@ -558,3 +558,17 @@ def test_a_family_of_ours_with_a_texture(llvm, bitmap):
     assert np.quantile(np.abs(np.array(drawn.pdf) / family.pdf(wo, wi, mode="one-shot", alpha=alpha) - 1), 0.99) < 1e-3
     with reflectree.mitsuba.evaluated():
         assert np.all(np.isfinite(np.array(mi.render(ball(material, 8), spp=4))))
+    # A texture that is looked at in many places, and lies elsewhere.
+    class Liar(mi.Texture):
+        def eval_1(self, si, active=True):
+            return dr.select(si.uv.x == 0.25, mi.Float(0.9), 0.4)
+
+        def to_string(self):
+            return "Liar[]"
+
+    mi.register_texture("liar", lambda props: Liar(props))
+    bsdf = mi.load_dict({**material, "alpha": {"type": "liar"}})
+    bsdf.eval(mi.BSDFContext(), si, drawn.wo)
+    si.uv = mi.Point2f(0.25, 0.3)
+    with pytest.raises(rt.Error, match="0.9 is outside of its range"):
+        bsdf.eval(mi.BSDFContext(), si, drawn.wo)

@@ -19,6 +19,7 @@ from ._error import Error
 
 Ranges = Dict[str, Tuple[float, float]]
 CHUNK = 1 << 22  # texels that are asked at once
+ROUNDING = 1e-5  # of a range
 BUILDING = threading.RLock()
 CHANGED: Set[Any] = set()  # leaves that hold something else for a while
 
@@ -47,12 +48,22 @@ class Textures:
         self.ranges: Ranges = {}
 
     def at(self, si: Any, active: Any) -> Tuple[Any, ...]:
-        """The values at points of the surface, in the order of the ranges. What leaves its range, though check() has
-        not seen it, is led back to the nearest member: of one-shot mode the density is then that of another member,
+        """The member at points of the surface, in the order of the ranges. What leaves its range, though check() has
+        not seen it, is led back to the nearest one: of one-shot mode the density is then that of another member,
         and the weight is right all the same."""
+        return tuple(self.dr.clip(value, float(np.float32(low)), float(np.float32(high)))
+                     for value, (low, high) in zip(self.values(si, active), self.ranges.values()))
+
+    def values(self, si: Any, active: Any) -> Tuple[Any, ...]:
+        """The same, whatever the ranges."""
         si = self.dr.detach(si)
-        return tuple(self.dr.clip(self._value(name, si, active), float(np.float32(low)), float(np.float32(high)))
-                     for name, (low, high) in self.ranges.items())
+        return tuple(self._value(name, si, active) for name in self.ranges)
+
+    def within(self, name: str, values: Array) -> Array:
+        """Without the rounding that leaves the range; what is further off stays there."""
+        low, high = np.float32(self.ranges[name])
+        inside = np.clip(values, low, high)
+        return np.where(np.abs(values - inside) <= ROUNDING * (high - low), inside, values)
 
     def _value(self, name: str, si: Any, active: Any) -> Any:
         texture = self.of[name]
@@ -106,7 +117,7 @@ class Textures:
         """Raises Error where a texture leaves the range of its parameter."""
         for name, (low, high) in self.ranges.items():
             least, most = self.found(name)
-            room = 1e-5 * (high - low)
+            room = ROUNDING * (high - low)
             if not (least >= low - room and most <= high + room):
                 raise Error(f"{name} goes from {least:g} to {most:g}, and the family from {low:g} to {high:g}",
                             self.where, "widen the range, or change the texture")

@@ -116,8 +116,8 @@ class _Ours:
             known, drawn = np.broadcast_arrays(known, drawn)
             at = {}
             if self._textures:
-                found = self._rows(self._textures.at(si, active), len(known))
-                at = {name: found[:, k] for k, name in enumerate(self._textures.ranges)}
+                found = self._rows(self._textures.values(si, active), len(known))
+                at = {name: self._textures.within(name, found[:, k]) for k, name in enumerate(self._textures.ranges)}
         except Exception as error:  # Dr.Jit's own, for arrays that are symbols
             raise Error(f"{self._brdf.name!r}, a material of ours, has values in evaluated arrays only, and these are "
                         "symbols: Dr.Jit compiles every BSDF that exists", "reflectree in Mitsuba",
