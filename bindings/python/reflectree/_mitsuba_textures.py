@@ -61,9 +61,10 @@ class Textures:
 
     def within(self, name: str, values: Array) -> Array:
         """Without the rounding that leaves the range; what is further off stays there."""
-        low, high = np.float32(self.ranges[name])
-        inside = np.clip(values, low, high)
-        return np.where(np.abs(values - inside) <= ROUNDING * (high - low), inside, values)
+        low, high = self.ranges[name]
+        inside = np.clip(values, np.float32(low), np.float32(high))
+        kept: Array = np.where(np.abs(values - inside) <= ROUNDING * (high - low), inside, values)
+        return kept
 
     def _value(self, name: str, si: Any, active: Any) -> Any:
         texture = self.of[name]
