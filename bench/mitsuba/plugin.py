@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The BSDF `reflectree` inside Mitsuba 3: Mitsuba's own chi-square test, times and variances, pictures, in Markdown.
 
-    PYTHONPATH=build/python python bench/mitsuba/plugin.py [chi2] [table] [pictures] [loads] > report.md
+    PYTHONPATH=build/python python bench/mitsuba/plugin.py [chi2] [table] [pictures] [loads] [families] > report.md
 
 Needs mitsuba and numpy; LLVM variants need LLVM 16 or later (DRJIT_LIBLLVM_PATH). REFLECTREE_DATA names the folder of
 measured files; without it they are left out, with a sentence.
@@ -145,22 +145,22 @@ class Scalar:
         return mi.Float(np.array(values, dtype=np.float32))
 
 
-def patient(description, degrees, turn=0.0):
+def patient(description, degrees, turn, uv):
     """(sample, pdf) for the judge."""
     if not VARIANT.startswith("scalar"):
-        return BSDFAdapter(description["type"], description, wi=direction(degrees))
+        return BSDFAdapter(description["type"], description, wi=direction(degrees), uv=list(uv))
     mi.set_variant(VARIANT)
     one_by_one = Scalar(description, direction(degrees), turn)
     mi.set_variant(VARIANT.replace("scalar", "llvm_ad"))
     return one_by_one.sample, one_by_one.pdf
 
 
-def judged(description, degrees, count, finest=128, turn=0.0):
+def judged(description, degrees, count, finest=128, turn=0.0, uv=(0.5, 0.5)):
     """(accepted, text) of mitsuba.chi2.ChiSquareTest. What is rejected is judged again by finer trapezoids for the
     expected counts, of the same samples: their error goes away, a fault stays."""
     ires = 4
     while True:
-        sample, pdf = patient(description, degrees, turn)
+        sample, pdf = patient(description, degrees, turn, uv)
         test = ChiSquareTest(SphericalDomain() if degrees else TiltedDomain(), sample, pdf, sample_dim=3, ires=ires)
         accepted = test.run(test_count=count, quiet=True)
         if accepted or ires >= finest:
@@ -263,12 +263,12 @@ def chi2():
 # ---- What a sample costs, and what its weight is worth
 
 
-def weights(bsdf, degrees, n, seed=1):
-    """Weights of n samples, and a function that times them."""
+def weights(bsdf, degrees, n, seed=1, uv=(0.5, 0.5)):
+    """Interactions at one place, and uniforms, for n samples."""
     rng = mi.PCG32(size=n, initstate=seed)
     si = dr.zeros(mi.SurfaceInteraction3f, n)
     si.wi, si.sh_frame = mi.Vector3f(direction(degrees)), mi.Frame3f(mi.Vector3f(0, 0, 1))
-    si.uv = mi.Point2f(0.5)
+    si.uv = mi.Point2f(list(uv))
     u1, u2 = rng.next_float32(), mi.Point2f(rng.next_float32(), rng.next_float32())
     dr.eval(si, u1, u2)
     return si, u1, u2
@@ -287,9 +287,11 @@ def seconds(work, repeats=5):
 
 
 def costs(bsdf, n=1 << 19):
-    """(ns per sample, ns per eval_pdf), over all angles together."""
+    """(ns per sample, ns per eval_pdf), over all angles and over the texture together."""
     context = mi.BSDFContext()
     si, u1, u2 = weights(bsdf, 30, n)
+    si.uv = mi.Point2f(mi.Float(np.random.default_rng(2).random(n, dtype=np.float32)), 0.5)
+    dr.eval(si)
     angle = mi.Float(np.radians(np.resize(np.asarray(ANGLES, dtype=np.float32), n)))
     si.wi = mi.Vector3f(dr.sin(angle), 0, dr.cos(angle))
     drawn, _ = bsdf.sample(context, si, u1, u2)
@@ -303,9 +305,9 @@ def costs(bsdf, n=1 << 19):
     return seconds(sample) / n * 1e9, seconds(lambda: bsdf.eval_pdf(context, si, wo)) / n * 1e9
 
 
-def variance(bsdf, degrees, n=1 << 19):
+def variance(bsdf, degrees, n=1 << 19, uv=(0.5, 0.5)):
     """Of the weight, relative: its channels together."""
-    si, u1, u2 = weights(bsdf, degrees, n)
+    si, u1, u2 = weights(bsdf, degrees, n, uv=uv)
     _, weight = bsdf.sample(mi.BSDFContext(), si, u1, u2)
     w = np.stack([np.broadcast_to(np.array(c, dtype=np.float64), n) for c in weight], axis=1)
     mean = w.mean(axis=0)
@@ -359,6 +361,81 @@ def loads():
     return True
 
 
+# ---- Families
+
+
+# The parameter, its ends, and the BSDF, with a texture that goes from one end to the other.
+FAMILIES = {
+    "roughconductor": ("alpha", 0.05, 0.8, {"type": "roughconductor", "distribution": "ggx"}),
+    "roughconductor Beckmann": ("alpha", 0.1, 0.5, {"type": "roughconductor", "distribution": "beckmann"}),
+    "principled": ("roughness", 0.2, 0.8, {"type": "principled",
+                                           "base_color": {"type": "rgb", "value": [0.7, 0.3, 0.1]}}),
+}
+PLACES = (0.0, 0.5, 1.0)  # of the texture, from end to end
+
+
+def varied(name, folder):
+    """A BSDF with its texture, and what wraps it, cached in a folder."""
+    parameter, low, high, bsdf = FAMILIES[name]
+    ramp = np.array([[low, high]] * 2, dtype=np.float32)[..., None]
+    nested = {**bsdf, parameter: {"type": "bitmap", "bitmap": mi.Bitmap(ramp), "raw": True}}
+    return nested, {**ours(nested, family=f"{parameter}={low}..{high}"), "cache": folder}
+
+
+def u_of(place):
+    """Between the centres of two texels."""
+    return 0.25 + 0.5 * place
+
+
+def families():
+    import tempfile
+
+    dr.set_thread_count(1)
+    print(f"\n## Families, {VARIANT}\n\nA texture varies the parameter; every sample is from another place of it. CPU "
+          "nanoseconds of one thread and relative variances at three places, as above: Mitsuba's sampler / ours.\n")
+    angles = (0, 60, 80)
+    row("BSDF", "parameter", "ns per sample", "ns per eval_pdf", *(f"variance {a}°" for a in angles), "built, s",
+        "from the file, s", "KiB")
+    row("---", "---", *["---:"] * 8)
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (parameter, low, high, _) in FAMILIES.items():
+            times = []
+            for _ in range(2):
+                start = time.process_time()
+                mine = mi.load_dict(varied(name, folder)[1])
+                times.append(time.process_time() - start)
+            own = mi.load_dict(varied(name, folder)[0])
+            (a, b), (c, d) = costs(own), costs(mine)
+            for k, place in enumerate(PLACES):
+                uv = (u_of(place), 0.5)
+                pairs = [(variance(own, angle, uv=uv), variance(mine, angle, uv=uv)) for angle in angles]
+                row(name if k == 0 else "", f"{parameter} {low + place * (high - low):.3g}",
+                    f"{a:.1f} / {c:.1f}" if k == 0 else "", f"{b:.1f} / {d:.1f}" if k == 0 else "",
+                    *(f"{x:.3g} / {y:.3g}" for x, y in pairs), *(f"{t:.1f}" if k == 0 else "" for t in times),
+                    f"{mine.sampler.nbytes / 1024:.0f}" if k == 0 else "")
+        return family_chi2(folder) & family_pictures(folder)
+
+
+def family_chi2(folder):
+    places, angles = (0.3, 1.0), (30, 60, 80)
+    count = len(FAMILIES) * len(places) * len(angles)
+    print("\nMitsuba's chi-square test of members:\n")
+    row("BSDF", *(f"{place} of the way, {a}°" for place in places for a in angles))
+    row("---", *["---:"] * (len(places) * len(angles)))
+    good = True
+    for name in FAMILIES:
+        found = [judged(varied(name, folder)[1], a, count, uv=(u_of(place), 0.5)) for place in places for a in angles]
+        good &= all(ok for ok, _ in found)
+        row(name, *(text if ok else f"**{text}**" for ok, text in found))
+    print("\nAll pass." if good else "\nNOT all pass.")
+    return good
+
+
+def family_pictures(folder):
+    print("\nPictures, with the texture around the sphere:\n")
+    return picture_table({name: varied(name, folder) for name in FAMILIES})
+
+
 # ---- Pictures
 
 
@@ -396,16 +473,20 @@ def z_scores(a, b):
 def pictures():
     print(f"\n## Pictures, {VARIANT}\n\nA sphere under a lamp and a sky; means of 4 × 4 pixels over independent "
           "renderings, ours beside Mitsuba's own plug-in. z² has the mean 1 where they are equal.\n")
-    row("material", "mean of z²", "largest abs(z)", "variance, ours / Mitsuba's", "twin: 3 % brighter, mean of z²")
-    row("---", "---:", "---:", "---:", "---:")
-    pixels, spp, count = (32, 16, 12) if VARIANT.startswith("scalar") else (64, 32, 32)
     names = ["principled 0.6", "roughconductor 0.1", "roughconductor 0.1 × 0.2", "roughplastic 0.1", "principled 0.3"]
     chosen = {n: {**MATERIALS, **NARROW}[n] for n in names}
     chosen.update(list(MEASURED.items())[-4::3])
+    return picture_table({name: (description, ours(description)) for name, description in chosen.items()})
+
+
+def picture_table(chosen):
+    row("material", "mean of z²", "largest abs(z)", "variance, ours / Mitsuba's", "twin: 3 % brighter, mean of z²")
+    row("---", "---:", "---:", "---:", "---:")
+    pixels, spp, count = (32, 16, 12) if VARIANT.startswith("scalar") else (64, 32, 32)
     good = True
-    for name, description in chosen.items():
-        own = batches(description, 1, pixels, spp, count)
-        mine = batches(ours(description), 1001, pixels, spp, count)
+    for name, (theirs, wrapped) in chosen.items():
+        own = batches(theirs, 1, pixels, spp, count)
+        mine = batches(wrapped, 1001, pixels, spp, count)
         z = z_scores(own, mine)
         twin = z_scores((own[0] * 1.03, own[1] * 1.03**2), mine)
         bound = np.sqrt(2 * np.log(len(z))) + 2.5
@@ -417,7 +498,8 @@ def pictures():
 
 
 def main(parts):
-    known = {"chi2": chi2, "table": table, "loads": loads, "pictures": pictures}
+    known = {"chi2": chi2, "table": table, "loads": loads, "pictures": pictures,
+             "families": families}
     unknown = set(parts) - set(known)
     if unknown:
         sys.exit(f"{sorted(unknown)} is no part; say {', '.join(known)}")

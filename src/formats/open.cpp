@@ -59,6 +59,10 @@ bool names_family(const std::string& text, const FilePlaces& places) {
 
 OpenedFamily open_family(SamplerData data, const FilePlaces& places) {
   AnyFamily family = family_of(data.material, places);
+  return open_family(std::move(family), std::move(data), places);
+}
+
+OpenedFamily open_family(AnyFamily family, SamplerData data, const FilePlaces& places) {
   check_identity(data, family);
   const std::string text = data.material;
   return assemble(text, std::move(family), std::move(data), places);

@@ -7,7 +7,7 @@ import numpy as np
 pi = np.pi
 eval = lambda *arrays: None  # noqa: E731, A001
 abs, sqrt, minimum, maximum = np.abs, np.sqrt, np.minimum, np.maximum  # noqa: A001
-clip, power, atan2, select = np.clip, np.power, np.arctan2, np.where
+clip, power, atan2, select, log, exp = np.clip, np.power, np.arctan2, np.where, np.log, np.exp
 
 
 def Float(values):
@@ -40,6 +40,10 @@ class _Vector:
 
 
 class Vector2u(_Vector):
+    width = 2
+
+
+class Vector2f(_Vector):
     width = 2
 
 

@@ -5,6 +5,7 @@ from ._arrays import Array
 
 version: str
 unnamed: str
+unnamed_family: str
 has_judges: bool
 
 def list_members(path: str) -> List[str]: ...
@@ -98,7 +99,10 @@ class Sampler:
 
 class Family:
     name: str
+    domain: str
+    isotropic: bool
     channels: int
+    has_channel_axis: bool
     ranges: Dict[str, Tuple[float, float]]
     report: Dict[str, Any]
     nbytes: int
@@ -118,9 +122,26 @@ class Family:
         progress: Optional[Callable[[float, str], Any]],
     ) -> Family: ...
     @staticmethod
-    def from_file(path: str) -> Family: ...
+    def build_function(
+        function: Any,
+        name: str,
+        double_precision: bool,
+        ranges: List[Tuple[str, float, float]],
+        *,
+        target: str,
+        channel: int,
+        expected_trials: float,
+        one_shot_variance: float,
+        albedo_error: float,
+        seed: int,
+        max_evaluations: int,
+        threads: int,
+        progress: Optional[Callable[[float, str], Any]],
+    ) -> Family: ...
     @staticmethod
-    def from_bytes(bytes: bytes, where: str) -> Family: ...
+    def from_file(path: str, function: Any, name: str, double_precision: bool) -> Family: ...
+    @staticmethod
+    def from_bytes(bytes: bytes, where: str, function: Any, name: str, double_precision: bool) -> Family: ...
     def to_bytes(self) -> bytes: ...
     def save(self, path: str) -> None: ...
     def sample(
@@ -149,6 +170,8 @@ class Family:
     def albedo(self, wo: Array, parameters: Array, out: Array) -> None: ...
     def expected_trials(self, wo: Array, parameters: Array, out: Array) -> None: ...
     def member(self, parameters: List[float]) -> Sampler: ...
+    def tables(self, one_shot: bool) -> Dict[str, Any]: ...
+    def member_of(self, brdf: Brdf, parameters: List[float]) -> Sampler: ...
 
 # Where has_judges is true.
 

@@ -4,18 +4,20 @@ specification; it says the same, one direction at a time."""
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional, Tuple
+from typing import Any, Callable, Optional, Sequence, Tuple
 
-from ._drjit_domain import domain_of
+from ._drjit_domain import Domain, domain_of
 from ._drjit_forest import MIN_COS, Albedo, Forest, Library, Vector, View
-from ._tables import Tables
+from ._tables import Tables, Width
 
 MAX_TRIALS = 256
+Parameters = Sequence[Any]
 
 
 class DrJitSampler:
     """Directions and densities over arrays. Ours are the names: ``wo`` is known, ``wi`` is drawn. With the tables of
-    exact mode that is there, too."""
+    exact mode that is there, too. ``at``: of families the values of the parameters; outside of their ranges there is
+    no sample."""
 
     def __init__(self, mi: Any, dr: Any, tables: Tables, exact: Optional[Tables] = None) -> None:
         self._lib = Library(mi, dr)
@@ -26,11 +28,12 @@ class DrJitSampler:
             self._exact = Forest(self._lib, exact, False)
             self._albedo = Albedo(self._lib, exact)
 
-    def sample(self, wo: Vector, u1: Any, u2: Tuple[Any, Any], active: Any, monotone: bool) -> Tuple[Vector, Any]:
+    def sample(self, wo: Vector, u1: Any, u2: Tuple[Any, Any], active: Any, monotone: bool,
+               at: Parameters = ()) -> Tuple[Vector, Any]:
         """wi and its density per solid angle, 0 for no sample. ``monotone``: a descent from u2 alone, which keeps
         stratified points stratified; else u1 chooses the leaf by alias table."""
         dr = self._lib.dr
-        view = self.view(wo)
+        view = self.view(wo, at)
         active = active & view.valid
         slab = self._one_shot.slab(view, active)
         (ux, uy), below = self._unfolded(u2)
@@ -56,14 +59,17 @@ class DrJitSampler:
         px, py, height = forest.place(leaf, ux, uy, active)
         if self._domain.half:
             py = self._lib.dr.select(below, -py, py)
-        return (*self._domain.lift(view.o, px, py), height)
+        return (*self._domain_of(view).lift(view.o, px, py), height)
+
+    def _domain_of(self, view: View) -> Domain:
+        return self._domain._replace(widths=view.widths)
 
     def sample_exact(self, wo: Vector, u1: Any, u2: Tuple[Any, Any], target: Callable[[Vector, Any], Any],
-                     active: Any) -> Tuple[Vector, Any]:
+                     active: Any, at: Parameters = ()) -> Tuple[Vector, Any]:
         """wi in proportion to the target times cos theta_i, and the density. The first trial is made of the uniforms,
         later ones of a generator that they seed; ``target(wi, active)`` is evaluated at each, without the cosine."""
         lib, dr, mi = self._lib, self._lib.dr, self._lib.mi
-        view = self.view(wo)
+        view = self.view(wo, at)
         active = active & view.valid
         albedo = self._albedo(view, active)
         active = active & (albedo > 0)
@@ -90,26 +96,27 @@ class DrJitSampler:
             lambda going, *_: going, body, label="trials")
         return (x, y, z), dr.select(active & (t > 0), t * z / albedo, 0)
 
-    def pdf_exact(self, wo: Vector, wi: Vector, t: Any, active: Any) -> Any:
+    def pdf_exact(self, wo: Vector, wi: Vector, t: Any, active: Any, at: Parameters = ()) -> Any:
         """Per solid angle, from the target at wi."""
-        view = self.view(wo)
+        view = self.view(wo, at)
         active = active & view.valid & (wi[2] > 0)
         albedo = self._albedo(view, active)
         return self._lib.dr.select(active & (albedo > 0), t * wi[2] / albedo, 0)
 
-    def pdf(self, wo: Vector, wi: Vector, active: Any) -> Any:
+    def pdf(self, wo: Vector, wi: Vector, active: Any, at: Parameters = ()) -> Any:
         """Per solid angle; 0 where a direction is below the surface."""
         dr = self._lib.dr
-        view = self.view(wo)
+        view = self.view(wo, at)
         active = active & view.valid & (wi[2] > 0)
         w = view.enter(wi)
         if self._domain.half:
             w = (w[0], dr.abs(w[1]), w[2])
-        px, py = self._domain.lower(view.o, w)
+        domain = self._domain_of(view)
+        px, py = domain.lower(view.o, w)
         slab = self._one_shot.slab_index(view, active)
         leaf = self._one_shot.locate(slab, px, py, active)
         height = self._one_shot.height(leaf, px, py, active)
-        lifted, area = self._domain.lift(view.o, px, py)
+        lifted, area = domain.lift(view.o, px, py)
         return dr.select(active, height / area * lifted[2], 0)
 
     def _word(self, u1: Any, u2: Tuple[Any, Any]) -> Any:
@@ -122,8 +129,32 @@ class DrJitSampler:
         h = (h ^ (h >> 12)) * mi.UInt32(0x297A2D39)
         return (high << 9) | (h >> 23)
 
-    def view(self, wo: Vector) -> View:
+    def view(self, wo: Vector, at: Parameters = ()) -> View:
         """incidence.hpp and incidence.cpp."""
+        view = self._view(wo)
+        if not self._tables.parameters:
+            return view
+        valid, coordinates = self._coordinates(at)
+        widths = tuple(self._width(w, coordinates) for w in self._tables.widths)
+        return view._replace(valid=view.valid & valid, at=coordinates, widths=widths)
+
+    def _coordinates(self, at: Parameters) -> Tuple[Any, Tuple[Any, ...]]:
+        """Whether all parameters are inside of their ranges, and their coordinates (packed_family.hpp)."""
+        dr, valid, coordinates = self._lib.dr, True, []
+        for p, value in zip(self._tables.parameters, at):
+            inside = (value >= p.low) & (value <= p.high)
+            x = dr.log(dr.select(inside, value, p.low)) if p.logarithmic else value
+            valid = inside & valid
+            coordinates.append(dr.clip(x, p.lowest, p.highest))
+        return valid, tuple(coordinates)
+
+    def _width(self, width: Width, at: Tuple[Any, ...]) -> Any:
+        exponent = 0.0
+        for slope, corner, x in zip(width.slope, width.corner, at):
+            exponent = exponent + slope * (x - corner)
+        return width.largest * self._lib.dr.exp(exponent)
+
+    def _view(self, wo: Vector) -> View:
         dr, mi, tables = self._lib.dr, self._lib.mi, self._tables
         x, y, z = wo
         s2 = x * x + y * y

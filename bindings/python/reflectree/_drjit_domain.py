@@ -13,13 +13,15 @@ LEAST = 1e-7  # rounding may carry the rim of the square to the horizon: it stay
 
 
 class Domain(NamedTuple):
-    """A map for viewers ``o``, three arrays in its frame; ``dr`` is Dr.Jit."""
+    """A map for viewers ``o``, three arrays in its frame; ``dr`` is Dr.Jit. ``widths``: of ``scaled_star``, those of
+    each viewer's member."""
 
     dr: Any
     kind: str
     half: bool
     exponent: float
     stretch: float
+    widths: Tuple[Any, Any] = (1.0, 1.0)
 
     def lift(self, o: Any, px: Any, py: Any) -> Tuple[Any, Any]:
         """wi, and d(projected solid angle) / d(share of the square)."""
@@ -31,9 +33,11 @@ class Domain(NamedTuple):
             ax = o[0] if self.kind == "half_vector" else -o[0]
             p, c = _star(dr, ax, o[2], ux)
             return self._reflected((ax, 0, o[2]), ux, uy, p, c, y)
-        if self.kind == "slope_star":
-            sx, sy, p, c = _slope_star(dr, o, ux, uy, self.stretch)
-            return self._reflected(o, sx, sy, p, c, y)
+        if self.kind in ("slope_star", "scaled_star"):
+            scales = self._scales()
+            sx, sy, p, c = _slope_star(dr, o, ux, uy, scales)
+            wi, area = self._reflected(o, sx, sy, p, c, y)
+            return wi, area * (scales[0] * scales[1])
         if self.kind in ("mirror_vector", "normal_vector"):
             y = dr.maximum(y, 1e-12)
             ax, az = self._axis(o)
@@ -70,14 +74,16 @@ class Domain(NamedTuple):
             t = sine / dr.maximum(wz, 1e-12)
             p, c = _star(dr, ax, o[2], wx / sine)
             radius = p * t / (p - (c - p) * t)
-        elif self.kind == "slope_star":
+        elif self.kind in ("slope_star", "scaled_star"):
+            scales = self._scales()
             hx, hy, hz = _half(dr, o, wi)
             hz = dr.maximum(hz, 1e-12)
-            vx, vy = hx / (hz * self.stretch), hy / hz * self.stretch
-            r = dr.maximum(dr.sqrt(vx * vx + vy * vy), LEAST)
+            vx, vy = hx / (hz * scales[0]), hy / (hz * scales[1])
+            least = LEAST if self.kind == "slope_star" else LEAST / dr.maximum(*scales)
+            r = dr.maximum(dr.sqrt(vx * vx + vy * vy), least)
             pole = (vx == 0) & (vy == 0)
             wx, wy = dr.select(pole, 1, vx / r), dr.select(pole, 0, vy / r)
-            _, _, p, c = _slope_star(dr, o, wx, wy, self.stretch)
+            _, _, p, c = _slope_star(dr, o, wx, wy, scales)
             radius = p * r / (p - (c - p) * r)
         elif self.kind in ("mirror_vector", "normal_vector"):
             ax, az = self._axis(o)
@@ -95,6 +101,10 @@ class Domain(NamedTuple):
             radius = 1 - dr.power(z, 2 - self.exponent)
         radius = dr.clip(radius, 0, 1)
         return _azimuth(dr, wx, wy), radius if self.half else dr.select(wy < 0, -radius, radius)
+
+    def _scales(self) -> Tuple[Any, Any]:
+        """How slopes are stretched along x and y."""
+        return self.widths if self.kind == "scaled_star" else (self.stretch, 1 / self.stretch)
 
     def _axis(self, o: Any) -> Tuple[Any, Any]:
         return (o[0], o[2]) if self.kind == "mirror_vector" else (0 * o[0], 0 * o[2] + 1)
@@ -164,8 +174,8 @@ def _rim(dr: Any, sine: Any, cosine: Any, cos_phi: Any) -> Tuple[Any, Any, Any]:
             dr.select(below, length, cosine * cosine / length))
 
 
-def _slope_star(dr: Any, o: Any, ux: Any, uy: Any, stretch: float) -> Tuple[Any, Any, Any, Any]:
-    ax, ay = stretch * ux, uy / stretch
+def _slope_star(dr: Any, o: Any, ux: Any, uy: Any, scales: Tuple[Any, Any]) -> Tuple[Any, Any, Any, Any]:
+    ax, ay = scales[0] * ux, scales[1] * uy
     q, b = ax * ax + ay * ay, ax * o[0] + ay * o[1]
     length = dr.sqrt(b * b + q * o[2] * o[2]) + dr.abs(b)
     return ax, ay, dr.select(b < 0, o[2], length), dr.select(b < 0, length, q * o[2])

@@ -4,16 +4,17 @@ albedo. Descents are loops."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Tuple
+from typing import Any, List, NamedTuple, Tuple
 
 import numpy as np
 
 from ._arrays import Array
-from ._drjit_packing import LEAF, cells, slab_tree, trees
-from ._tables import Tables
+from ._drjit_packing import LEAF, cells, slab_grid, slab_tree, trees
+from ._tables import AlbedoAxis, Tables
 
 MIN_COS = 2.0**-17  # viewers closer to the horizon have no sample
 Vector = Tuple[Any, Any, Any]
+Rows = Tuple[Any, int, Tuple[Any, ...]]  # the first of four, their distance, their weights
 
 
 class View(NamedTuple):
@@ -25,6 +26,9 @@ class View(NamedTuple):
     sine: Any
     side: Any
     phi_o: Any
+    # Of families: the coordinates of the parameters, and the widths of the domain.
+    at: Tuple[Any, ...] = ()
+    widths: Tuple[Any, Any] = (1.0, 1.0)
 
     def leave(self, w: Vector) -> Vector:
         x, y = w[0], w[1] * self.side
@@ -90,6 +94,56 @@ class CosineLookup:
         return i
 
 
+class BorderLookup:
+    """How many of ascending borders are at or below x: equal cells know how many lie before them."""
+
+    def __init__(self, lib: Library, borders: Array, low: float, high: float) -> None:
+        self._lib, self._low = lib, low
+        self.none = len(borders) == 0
+        for bits in range(4, 13):
+            ends = np.linspace(low, high, 2**bits + 1)
+            # A cell more at both ends, for what rounding puts into its neighbour.
+            before = np.searchsorted(borders, ends - (high - low) * 1e-6, side="right")
+            steps = int(np.max(np.searchsorted(borders, ends[1:] + (high - low) * 1e-6, side="right") - before[:-1],
+                               initial=0))
+            if steps <= 1:
+                break
+        self._per_unit, self._last, self._steps = 2**bits / (high - low), 2**bits - 1, steps
+        self._guide = lib.words(before[:-1])
+        self._borders = lib.floats(np.append(borders, np.float32(3e38)))
+
+    def __call__(self, x: Any, active: Any) -> Any:
+        dr, mi = self._lib.dr, self._lib.mi
+        if self.none:
+            return mi.UInt32(0)
+        cell = dr.minimum(mi.UInt32(dr.maximum((x - self._low) * self._per_unit, 0)), mi.UInt32(self._last))
+        i = dr.gather(mi.UInt32, self._guide, cell, active)
+        for _ in range(self._steps):
+            i += dr.select(dr.gather(mi.Float, self._borders, i, active) <= x, mi.UInt32(1), mi.UInt32(0))
+        return i
+
+
+class SlabGrid:
+    """The slab of a family's viewer and member, by the borders of every coordinate."""
+
+    def __init__(self, lib: Library, tables: Tables) -> None:
+        grid = slab_grid(tables)
+        self._lib, self._shape = lib, grid.slabs.shape
+        self._cosines = CosineLookup(lib, grid.cosines)
+        spans = [(p.lowest, p.highest) for p in tables.parameters]
+        if len(grid.borders) > len(spans):
+            spans.insert(0, (0.0, 6.2831855))
+        self._others = [BorderLookup(lib, b, *span) for b, span in zip(grid.borders, spans)]
+        self._slabs = lib.words(grid.slabs)
+
+    def __call__(self, view: View, active: Any) -> Any:
+        cell = self._cosines(view.o[2], active)
+        known = view.at if view.phi_o is None else (view.phi_o, *view.at)
+        for look_up, x, count in zip(self._others, known, self._shape[1:]):
+            cell = cell * count + look_up(x, active)
+        return self._lib.dr.gather(self._lib.mi.UInt32, self._slabs, cell, active)
+
+
 class Forest:
     """The trees of one mode."""
 
@@ -98,7 +152,8 @@ class Forest:
         slabs, leaves = tables.slabs, tables.leaves
         self._half = tables.half
         self._lookup = CosineLookup(lib, tables.borders) if len(tables.borders) else None
-        if self._lookup is None:
+        self._grid = SlabGrid(lib, tables) if tables.parameters else None
+        if self._lookup is None and self._grid is None:
             self._slab_tree = lib.words(slab_tree(tables))
         slab = np.zeros((len(slabs), 4), np.uint32)
         slab[:, 0], slab[:, 1] = slabs["first"], slabs["count"]
@@ -117,6 +172,8 @@ class Forest:
         self._cells = lib.floats(cells(tables))
 
     def slab_index(self, view: View, active: Any) -> Any:
+        if self._grid is not None:
+            return self._grid(view, active)
         return self._lookup(view.o[2], active) if self._lookup is not None else self._in_slab_tree(view, active)
 
     def slab(self, view: View, active: Any) -> Any:
@@ -218,14 +275,46 @@ class Albedo:
         self._segment_count = len(segments)
         self._segments = lib.words(np.ascontiguousarray(segments).view(np.uint32)) if len(segments) else None
         self._borders = lib.floats(np.append(segments["phi_o"], 100)) if len(segments) else None
+        self._axes, self._of_cosine = tables.albedo_axes, tables.albedo_row
 
     def __call__(self, view: View, active: Any) -> Any:
         lib, dr, mi = self._lib, self._lib.dr, self._lib.mi
         c = view.o[2]
         i = self._lookup(c, active)
+        if self._axes:
+            rows = [self._rows(axis, x) for axis, x in zip(self._axes, view.at)]
+            if self._segments is not None:
+                rows.append(self._azimuths(view, active))
+            return dr.maximum(self._sum(rows, i * self._of_cosine, 1, c, active), 0)
         if self._segments is None:
             piece = dr.gather(mi.Vector2f, self._pieces, i, active)
             return piece.x + piece.y * c
+        (first, _, weights), sum_ = self._azimuths(view, active), mi.Float(0)
+        for n, weight in enumerate(weights):
+            piece = dr.gather(mi.Vector2f, self._pieces, (first + n) * self._row + i, active)
+            sum_ = sum_ + weight * (piece.x + piece.y * c)
+        return dr.maximum(sum_, 0)
+
+    def _sum(self, rows: List[Rows], at: Any, weight: Any, c: Any, active: Any) -> Any:
+        """Over four rows of every axis."""
+        dr, mi = self._lib.dr, self._lib.mi
+        if not rows:
+            piece = dr.gather(mi.Vector2f, self._pieces, at, active)
+            return weight * (piece.x + piece.y * c)
+        first, stride, weights = rows[0]
+        sum_ = mi.Float(0)
+        for n, w in enumerate(weights):
+            sum_ = sum_ + self._sum(rows[1:], at + (first + n) * stride, weight * w, c, active)
+        return sum_
+
+    def _rows(self, axis: AlbedoAxis, at: Any) -> Rows:
+        dr, mi = self._lib.dr, self._lib.mi
+        x = dr.clip((at - axis.low) * axis.rows_per_unit, 0, axis.rows - 1)
+        first = dr.minimum(mi.UInt32(x), mi.UInt32(axis.rows - 2))
+        return first, axis.stride, _cubic(x - mi.Float(first))
+
+    def _azimuths(self, view: View, active: Any) -> Rows:
+        lib, dr, mi = self._lib, self._lib.dr, self._lib.mi
         k = mi.UInt32(0)
         for half in reversed([2**b for b in range(self._segment_count.bit_length())]):  # the last that begins before
             at = dr.minimum(k + half, mi.UInt32(self._segment_count))
@@ -233,13 +322,13 @@ class Albedo:
         segment = dr.gather(mi.Vector4u, self._segments, k, active)
         x = dr.maximum((view.phi_o - lib.as_float(segment.x)) * lib.as_float(segment.y), 0)
         line = dr.minimum(mi.UInt32(x), segment.w)
-        t = x - mi.Float(line)
-        sum_ = mi.Float(0)
-        for n, weight in enumerate((-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
-                                    -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6)):
-            piece = dr.gather(mi.Vector2f, self._pieces, (segment.z + line + n) * self._row + i, active)
-            sum_ = sum_ + weight * (piece.x + piece.y * c)
-        return dr.maximum(sum_, 0)
+        return segment.z + line, 1, _cubic(x - mi.Float(line))
+
+
+def _cubic(t: Any) -> Tuple[Any, ...]:
+    """The weights of equidistant values at -1, 0, 1, 2 in the cubic through them (cubic_weights of albedo.hpp)."""
+    return (-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+            (t + 1) * t * (t - 1) / 6)
 
 
 def _linear(dr: Any, slope: Any, u: Any) -> Any:

@@ -9,6 +9,7 @@ from typing import List, NamedTuple
 import numpy as np
 
 from ._arrays import Array
+from ._error import Error
 from ._tables import Tables
 
 LEAF = 2  # the axis of what is no inner node
@@ -105,3 +106,36 @@ def slab_tree(tables: Tables) -> Array:
             nodes[at] = (np.float32(np.cos(split) if axis == 0 else split).view(np.uint32), axis)
             open_uppers.append(at)
     return nodes
+
+
+class Grid(NamedTuple):
+    """Over all borders of the slabs: of the first axis cosines that ascend, with both ends; of every other axis
+    coordinates between the ends. And the slab of every cell."""
+
+    cosines: Array
+    borders: List[Array]
+    slabs: Array
+
+
+def slab_grid(tables: Tables) -> Grid:
+    axes = 1 + (tables.symmetry != "isotropic") + len(tables.parameters)
+    inner = tables.partition_axis[tables.partition_axis != 255]
+    borders = [np.unique(tables.partition_split[inner == a]) for a in range(axes)]
+    cells = np.prod([len(b) + 1.0 for b in borders])
+    if cells > 2**22:
+        raise Error(f"its slabs have borders for a grid of {cells:.0f} cells", "a family over Dr.Jit",
+                    "narrow the ranges of its parameters")
+    slabs = np.zeros([len(b) + 1 for b in borders], np.uint32)
+    open_boxes = [([0] * axes, list(slabs.shape))]  # of cells, those of nodes that are still to come
+    splits, slab = iter(tables.partition_split), 0
+    for axis in tables.partition_axis.tolist():
+        first, last = open_boxes.pop()
+        if axis == 255:
+            slabs[tuple(slice(a, b) for a, b in zip(first, last))] = slab
+            slab += 1
+        else:
+            at = int(np.searchsorted(borders[axis], next(splits))) + 1
+            open_boxes.append(([*first[:axis], at, *first[axis + 1:]], last))
+            open_boxes.append((first, [*last[:axis], at, *last[axis + 1:]]))
+    cosines = np.concatenate([[2.0**-17], np.cos(borders[0])[::-1], [2]]).astype(np.float32)
+    return Grid(cosines, borders[1:], np.ascontiguousarray(slabs[::-1]))

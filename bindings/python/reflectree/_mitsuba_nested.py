@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from typing import Any, List, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -16,27 +16,33 @@ from ._arrays import Array
 from ._brdf import Brdf, function
 from ._conventions import direction
 from ._error import Error
+from ._mitsuba_textures import VariedTextures
 
 PROBES = 256
+Place = Union[float, Any]  # of the surface: one for all, or texture coordinates
 # At which a spectral variant's values are sampled, in nm: two interactions of four wavelengths.
 WAVELENGTHS = ((400.0, 486.0, 571.0, 657.0), (443.0, 529.0, 614.0, 700.0))
 
 
 class Surface:
-    """Where and with which wavelengths a BSDF is asked."""
+    """Where and with which wavelengths a BSDF is asked. With textures it is a family; inside of their varied()
+    members are asked for by ``at``, values of the parameters."""
 
-    def __init__(self, mi: Any, dr: Any, bsdf: Any) -> None:
-        self.mi, self.dr, self.bsdf = mi, dr, bsdf
+    def __init__(self, mi: Any, dr: Any, bsdf: Any, textures: Optional[VariedTextures] = None) -> None:
+        self.mi, self.dr, self.bsdf, self.textures = mi, dr, bsdf, textures
         self.jit = dr.is_jit_v(mi.Float)
         self._context = mi.BSDFContext()
 
-    def cosine_values(self, wo: Array, wi: Array, place: float = 0.5) -> Array:
+    def cosine_values(self, wo: Array, wi: Array, place: Place = 0.5, **at: Array) -> Array:
         """eval, with the cosine, channel by channel; ``place`` moves the point of the surface."""
+        if at:
+            assert self.textures
+            place = self.textures.coordinates(at)
         if self.mi.is_spectral:
             return np.concatenate([self._ask(wo, wi, place, list(w)) for w in WAVELENGTHS], axis=1)
         return self._ask(wo, wi, place, [])
 
-    def _ask(self, wo: Array, wi: Array, place: float, wavelengths: List[float]) -> Array:
+    def _ask(self, wo: Array, wi: Array, place: Place, wavelengths: List[float]) -> Array:
         if self.jit:
             values = self._eval(self._vector(wo), self._vector(wi), len(wo), place, wavelengths)
             self.dr.eval(values)
@@ -49,14 +55,20 @@ class Surface:
     def _vector(self, rows: Array) -> Any:
         return self.mi.Vector3f(*(self.mi.Float(np.ascontiguousarray(rows[:, k], dtype=np.float32)) for k in range(3)))
 
-    def _eval(self, wo: Any, wi: Any, n: int, place: float, wavelengths: List[float]) -> Any:
+    def interactions(self, wo: Any, n: int, place: Place) -> Any:
+        """Of viewers with places of the surface: one for all, or their texture coordinates."""
         mi, dr = self.mi, self.dr
         si = dr.zeros(mi.SurfaceInteraction3f, n) if self.jit else dr.zeros(mi.SurfaceInteraction3f)
         si.t, si.wi = 1, wo
-        si.p, si.uv = mi.Point3f(place - 0.5, 2 * place - 1, 0), mi.Point2f(place, 1 - place)
+        si.uv = mi.Point2f(place, 1 - place) if isinstance(place, float) else place
+        si.p = mi.Point3f(si.uv.x - 0.5, 1 - 2 * si.uv.y, 0)
         si.n, si.sh_frame = mi.Normal3f(0, 0, 1), mi.Frame3f(mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0),
                                                            mi.Vector3f(0, 0, 1))
         si.dp_du, si.dp_dv = mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0)
+        return si
+
+    def _eval(self, wo: Any, wi: Any, n: int, place: Place, wavelengths: List[float]) -> Any:
+        si = self.interactions(wo, n, place)
         if wavelengths:
             si.wavelengths = type(si.wavelengths)(wavelengths)
         return self.bsdf.eval(self._context, si, wi)
@@ -106,6 +118,19 @@ def brdf_of(surface: Surface) -> Brdf:
     return function(values, name="a BSDF of Mitsuba", dtype=np.float32)
 
 
+def family_of(surface: Surface) -> Callable[..., Array]:
+    """The same as a function of the parameters, too; quick inside of their varied()."""
+
+    def values(wo: Array, wi: Array, **at: Array) -> Array:
+        assert surface.textures
+        surface.textures.check_named(at)
+        with surface.textures.varied():
+            f: Array = np.abs(surface.cosine_values(wo, wi, **at)) / wi[:, 2:]
+        return f
+
+    return values
+
+
 def probes(n: int = PROBES) -> Tuple[Array, Array]:
     """Pairs of directions above the surface; half of them near the mirror direction."""
     rng = np.random.default_rng(20080204)
@@ -127,47 +152,86 @@ def refuse_what_cannot_be_wrapped(surface: Surface) -> None:
                     "nest a rough BSDF, or blend the mirror with a reflectree by a blendbsdf")
     if flags & int(kinds.Transmission):
         raise Error("it transmits light, and samplers are of reflection", where, "nest a BSDF that reflects only")
-    if flags & int(kinds.SpatiallyVarying):
+    if flags & int(kinds.SpatiallyVarying) and not surface.textures:
         raise Error("its parameters vary over the surface, and a sampler serves one set of them", where,
-                    "nest a BSDF without textures")
+                    "nest a BSDF without textures, or name the parameter of one or two of them, as in family alpha")
     wo, wi = probes()
     down = np.array([1, 1, -1], dtype=np.float32)
-    values = surface.cosine_values(wo, wi)
     if np.any(surface.cosine_values(wo, wi * down) != 0):
         raise Error("it transmits light, and samplers are of reflection", where, "nest a BSDF that reflects only")
     if np.any(surface.cosine_values(wo * down, wi * down) != 0):
         raise Error("it reflects from the back side, too", where,
                     "nest what is inside of it, and put a twosided around the reflectree")
+    if surface.textures:
+        return _refuse_what_else_varies(surface, surface.textures, wo, wi, where)
+    values = surface.cosine_values(wo, wi)
     for place in (0.0, 0.3, 0.9):
         other = surface.cosine_values(wo, wi, place)
         if not np.allclose(other, values, rtol=1e-3, atol=1e-6 * float(np.max(np.abs(values), initial=0)),
                            equal_nan=True):
             raise Error("its values vary over the surface, and a sampler serves one set of parameters", where,
-                        "nest a BSDF without textures and bumps")
+                        "nest a BSDF without textures and bumps, or name the parameter of one or two of them, as in "
+                        "family alpha")
+
+
+def _refuse_what_else_varies(surface: Surface, textures: VariedTextures, wo: Array, wi: Array, where: str) -> None:
+    """Raises Error unless the values at places all over the surface are those of the members there."""
+    mi = surface.mi
+    u, v = np.random.default_rng(3).random((2, len(wo)), dtype=np.float32)
+    place = mi.Point2f(mi.Float(u), mi.Float(v))
+    si = surface.interactions(mi.Vector3f(0, 0, 1), len(wo), place)
+    at = {name: np.broadcast_to(np.asarray(x, np.float32), len(wo))
+          for name, x in zip(textures.ranges, textures.at(si, True))}
+    values = surface.cosine_values(wo, wi, place)
+    with textures.varied():
+        textures.follows(at, surface.interactions(mi.Vector3f(0, 0, 1), len(wo), textures.coordinates(at)))
+        members = surface.cosine_values(wo, wi, **at)
+    largest = float(np.max(np.abs(values), initial=0))
+    if not np.allclose(members, values, rtol=2e-3, atol=1e-6 * largest, equal_nan=True):
+        raise Error("its values vary over the surface by more than " + " and ".join(textures.ranges), where,
+                    "nest a BSDF that has no other textures and no bumps")
 
 
 def identity_of(surface: Surface, options: str) -> str:
-    """A name for the sampler of this BSDF: its class, its text, its parameters, some values, the options."""
+    """A name for the sampler of this BSDF: its class, its text, its parameters, some values, the options. Of a family,
+    inside of varied(): whatever its textures hold."""
     digest = hashlib.sha256()
 
     def add(data: Any) -> None:
         data = data if isinstance(data, bytes) else str(data).encode()
         digest.update(len(data).to_bytes(8, "little") + data)
 
-    bsdf = surface.bsdf
+    bsdf, textures = surface.bsdf, surface.textures
     add(options)
     add(f"{surface.mi.is_rgb} {surface.mi.is_spectral} {surface.mi.is_monochromatic}")
     add(name_of(bsdf))
     # Without addresses, and as scalar and JIT variants write alike: no brackets, no zeros at the end of a number.
     text = re.sub(r"0x[0-9a-fA-F]+|[\[\]\s]", "", str(bsdf))
+    at: Dict[str, Array] = {}
+    wo, wi = probes(32)
+    if textures:
+        add(textures.ranges)
+        text = re.sub(r'\bname="[^"]*"', "", text)  # of a bitmap's file
+        rng = np.random.default_rng(4)
+        at = {name: rng.uniform(*ends, len(wo)).astype(np.float32) for name, ends in textures.ranges.items()}
     add(re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):g}", text))
-    parameters = surface.mi.traverse(bsdf)
-    for name in sorted(parameters.keys()):
-        value = parameters[name]
-        add(name)
-        try:
-            add(np.ascontiguousarray(np.asarray(value, dtype=np.float32)).tobytes())
-        except (TypeError, ValueError):
-            add(value)
-    add(" ".join(f"{v:.2e}" for v in surface.cosine_values(*probes(32)).reshape(-1)))
+    for part in _parameter_parts(surface):
+        add(part)
+    add(" ".join(f"{v:.2e}" for v in surface.cosine_values(wo, wi, **at).reshape(-1)))
     return digest.hexdigest()[:32]
+
+
+def parameters_of(surface: Surface) -> List[Any]:
+    """All parameters of the BSDF but those of a family, to compare."""
+    return list(_parameter_parts(surface))
+
+
+def _parameter_parts(surface: Surface) -> Iterator[Any]:
+    parameters = surface.mi.traverse(surface.bsdf)
+    for name in sorted(surface.textures.others() if surface.textures else parameters.keys()):
+        value = parameters[name]
+        yield name
+        try:
+            yield np.ascontiguousarray(np.asarray(value, dtype=np.float32)).tobytes()
+        except (TypeError, ValueError):
+            yield str(value)

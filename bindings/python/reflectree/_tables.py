@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, NamedTuple
+from typing import Any, Dict, List, NamedTuple, Tuple
 
 import numpy as np
 
@@ -16,6 +16,34 @@ LEAF = np.dtype([("threshold", "<u4"), ("height", "<f4"), ("alias", "<u2"), ("x"
 NODE = np.dtype([("lower", "<f4"), ("lower_leaves_split_x", "<u4")])
 PIECE = np.dtype([("base", "<f4"), ("slope", "<f4")])
 SEGMENT = np.dtype([("phi_o", "<f4"), ("rows_per_radian", "<f4"), ("first", "<u4"), ("last", "<u4")])
+
+
+class Parameter(NamedTuple):
+    """A known coordinate: the value, or its logarithm, from ``lowest`` to ``highest``."""
+
+    name: str
+    low: float
+    high: float
+    lowest: float
+    highest: float
+    logarithmic: bool
+
+
+class Width(NamedTuple):
+    """largest exp(slope . (coordinates - corner))."""
+
+    largest: float
+    slope: Tuple[float, float]
+    corner: Tuple[float, float]
+
+
+class AlbedoAxis(NamedTuple):
+    """Equidistant rows along a coordinate, with one more at both ends; ``stride`` pieces from row to row."""
+
+    low: float
+    rows_per_unit: float
+    rows: int
+    stride: int
 
 
 class Tables(NamedTuple):
@@ -51,6 +79,14 @@ class Tables(NamedTuple):
         x is split.
     albedo_borders, albedo_pieces, albedo_segments : arrays
         Lines over the cosine; of anisotropic functions row after row, whose azimuths the segments tell.
+    parameters : list of Parameter
+        Of a family; else empty. Their coordinates come last in the partition.
+    widths : list of Width
+        Of the domain ``scaled_star``, along x and y.
+    albedo_axes : list of AlbedoAxis
+        Of a family, whose pieces are ordered [cosine][second parameter][first parameter][azimuth].
+    albedo_row : int
+        Pieces of one cosine, of families.
     """
 
     domain: str
@@ -71,6 +107,10 @@ class Tables(NamedTuple):
     albedo_borders: Array
     albedo_pieces: Array
     albedo_segments: Array
+    parameters: List[Parameter]
+    widths: List[Width]
+    albedo_axes: List[AlbedoAxis]
+    albedo_row: int
 
 
 TYPES: Dict[str, Any] = {
@@ -81,4 +121,7 @@ TYPES: Dict[str, Any] = {
 def tables_of(core: Any, one_shot: bool) -> Tables:
     found: Dict[str, Any] = core.tables(one_shot)
     arrays: Dict[str, Any] = {name: np.frombuffer(found[name], dtype) for name, dtype in TYPES.items()}
-    return Tables(**{**found, **arrays})
+    of_families = dict(parameters=[Parameter(*p) for p in found["parameters"]],
+                       widths=[Width(*w) for w in found["widths"]],
+                       albedo_axes=[AlbedoAxis(*a) for a in found["albedo_axes"]])
+    return Tables(**{**found, **arrays, **of_families})

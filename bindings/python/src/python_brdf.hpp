@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function of Python as a BRDF: f(wo, wi) -> (n,) or (n, channels), called with arrays of its own.
+// A function of Python as a BRDF, f(wo, wi) -> (n,) or (n, channels), called with arrays of its own; or, with
+// an array of shape (n,) more for each parameter, by its name, as a family.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -7,8 +8,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/family.hpp"
 
 namespace reflectree::python {
 
@@ -41,12 +43,17 @@ class FunctionOwner {  // all under the GIL
 class PythonBrdf {
  public:
   // Borrows the function. `name`: in errors. double_precision: the type of the arrays that f is given.
-  // Holding the GIL; calls f once to learn its channels. Throws Error, and what f raises.
-  PythonBrdf(std::shared_ptr<FunctionPlace> f, std::string name, bool double_precision);
+  // ranges: of its parameters, where it is a family's. Holding the GIL; calls f once to learn its channels.
+  // Throws Error, and what f raises.
+  PythonBrdf(std::shared_ptr<FunctionPlace> f, std::string name, bool double_precision,
+             std::vector<ParameterRange> ranges = {});
 
   // With or without the GIL. Throws Error for what is no BRDF, nb::python_error for what f raises.
   void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<float> out) const;
   void eval(std::span<const ShadingGeometry<float>> geometry, std::span<float> out) const;
+  // Of a family; at: the parameters of each pair.
+  void eval(std::span<const Direction> wo, std::span<const Direction> wi, std::span<const Parameters> at,
+            std::span<float> out) const;
   Spectrum operator()(Direction wo, Direction wi) const;
   BrdfTraits traits() const;
 
@@ -59,16 +66,34 @@ class PythonBrdf {
   Calls calls() const { return *calls_; }
 
  private:
+  // Pairs of directions, and of a family the parameters of each.
+  struct Pairs {
+    std::span<const Direction> wo, wi;
+    std::span<const Parameters> at;
+  };
   // What f returns, as an array of floats of any shape; and its values, checked. Both under the GIL.
-  nb::object ask(std::span<const Direction> wo, std::span<const Direction> wi) const;
-  void take(const nb::object& answer, std::span<const Direction> wo, std::span<const Direction> wi,
-            std::span<float> out) const;
+  nb::object ask(const Pairs& pairs) const;
+  void take(const nb::object& answer, const Pairs& pairs, std::span<float> out) const;
 
   std::shared_ptr<FunctionPlace> f_;
   std::shared_ptr<Calls> calls_ = std::make_shared<Calls>();
   std::string name_;
   bool double_precision_, has_channel_axis_ = false;
   int channels_ = 0;
+  std::vector<ParameterRange> ranges_;
+};
+
+// A PythonBrdf with ranges as a family's function (family.hpp).
+class PythonFamily {
+ public:
+  explicit PythonFamily(PythonBrdf f) : f_(std::move(f)) {}
+  void eval(std::span<const ShadingGeometry<float>> geometry, std::span<const Parameters> at,
+            std::span<float> out) const;
+  Spectrum operator()(const ShadingGeometry<float>& g, const Parameters& at) const;
+  BrdfTraits traits(const Parameters&) const { return f_.traits(); }
+
+ private:
+  PythonBrdf f_;
 };
 
 }  // namespace reflectree::python

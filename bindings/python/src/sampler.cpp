@@ -259,7 +259,12 @@ void bind_sampler(nb::module_& m) {
             return nb::cast(leaves_at(s, one_shot, {x, y, z}));
           },
           nb::arg("one_shot"), nb::arg("x"), nb::arg("y"), nb::arg("z"))
-      .def("tables", &tables_of, nb::arg("one_shot"))
+      .def(
+          "tables",
+          [](const PySampler& s, bool one_shot) {
+            return tables_of(s.sampler.exact.packed(), s.data, one_shot);
+          },
+          nb::arg("one_shot"))
       .def("draw_one", &draw_one, nb::arg("wo"), nb::arg("u1"), nb::arg("u2"))
       .def("density_one", &density_one, nb::arg("wo"), nb::arg("wi"))
       .def_prop_ro("report", [](const PySampler& s) { return report_of(s.data.report); })

@@ -28,7 +28,7 @@ nb::dict report_of(const BuildReport& report);
 void densities_into(const PySampler& s, bool one_shot, std::span<const Direction> wo,
                     std::span<const Direction> wi, std::span<const float> values, std::span<float> out);
 // The run-time arrays of a mode, as bytes by name.
-nb::dict tables_of(const PySampler& s, bool one_shot);
+nb::dict tables_of(const PackedSampler& packed, const SamplerData& data, bool one_shot);
 // wi and its density by one-shot mode, 0 for no sample; that density. f is not evaluated.
 std::array<float, 4> draw_one(const PySampler& s, const std::array<float, 3>& wo, double u1, double u2);
 float density_one(const PySampler& s, const std::array<float, 3>& wo, const std::array<float, 3>& wi);

@@ -46,8 +46,10 @@ bool names_family(const std::string& text, const FilePlaces& places);
 // Builds or loads it. Throws Error, Cancelled.
 OpenedFamily open_family(const std::string& text, const FilePlaces& places = {},
                          const BuildOptions& options = {}, const Host& host = {});
-// Of canonical data of a family. Throws Error.
+// Of canonical data of a family, which its text names or which is at hand. Throws Error, also where the data
+// is of another.
 OpenedFamily open_family(SamplerData data, const FilePlaces& places);
+OpenedFamily open_family(AnyFamily family, SamplerData data, const FilePlaces& places = {});
 // Its member as a sampler like any other (member.hpp). Throws Error outside of the ranges.
 OpenedSampler open_member(const OpenedFamily& family, const Parameters& at);
 // "alpha=0.3" or "alpha_x=0.1,alpha_y=0.3": a number for each parameter, in any order. Throws Error.
