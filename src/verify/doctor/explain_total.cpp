@@ -39,7 +39,8 @@ Explanation explain_total(const DensitySearch& s) {
   const double middle = 0.5 * (*least + *most);
   bool constant = true;
   for (std::size_t i = 0; i < factor.size(); ++i) {
-    constant = constant && std::abs(factor[i] - middle) <= tolerance[i] * middle;
+    constant = constant &&
+               std::abs(factor[i] - middle) <= std::min(tolerance[i] * middle, 0.5 * std::abs(middle - 1));
   }
   Explanation e;
   if (constant) {
