@@ -102,7 +102,7 @@ def row(*cells):
 
 
 def diagnosed(program, description):
-    """What it says, its seconds by the clock and of the processor, those of the client included."""
+    """Its findings as (a cell, sentences), its seconds by the clock and of the processor, with those of the client."""
     client = shlex.join([sys.executable, str(CLIENT), json.dumps(description)])
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run([program, "--json", "doctor", "--effort", os.environ.get("EFFORT", "default"), "--exec", client],
@@ -111,10 +111,10 @@ def diagnosed(program, description):
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     if done.returncode == 2:
         said = [line for line in done.stderr.splitlines() if line.startswith("mitsuba_client.py: ")]
-        return "refused: " + (said or done.stderr.splitlines())[-1].removeprefix("mitsuba_client.py: "), clock, cpu
+        return "refused", [(said or done.stderr.splitlines())[-1].removeprefix("mitsuba_client.py: ")], clock, cpu
     findings = json.loads(done.stdout)["findings"]
-    words = [("FAULT: " if f["fault"] else "remark: ") + f"{f['words']} [`{f['cause']}`]" for f in findings]
-    return "; ".join(words) or "no fault", clock, cpu
+    cell = ", ".join(("**fault** " if f["fault"] else "remark ") + f"`{f['cause']}`" for f in findings)
+    return cell or "no fault", [f["words"] for f in findings], clock, cpu
 
 
 # ---- The same by other means
@@ -152,7 +152,7 @@ def on_a_grid(bsdf, degrees):
     return mass, albedo, below
 
 
-def drawn(bsdf, degrees, seed=3):
+def drawn(bsdf, degrees, seed):
     """(counts per bin, share of lost draws, mean weight and its standard error per channel, draws that are NaN, and the
     largest relative distances of weight * pdf from eval and of pdf() from sample's, but for one draw in 1000)."""
     count, lost, nan = np.zeros(ROWS * COLUMNS), 0, 0
@@ -201,12 +201,12 @@ def shape_p(mass, count):
     return chi_square_tail(np.sum((c - e) ** 2 / e), len(e) - 1) if len(e) > 1 else 1.0
 
 
-def checked(bsdf):
+def checked(bsdf, seed):
     """The worst of all viewers."""
     sums, least_p, bias, below_excess, nan, off_value, off_pdf = [], 1.0, (0, 0), 0.0, 0, 0.0, 0.0
     for degrees in ANGLES:
         mass, albedo, below = on_a_grid(bsdf, degrees)
-        count, lost, mean, error, broken, a, b = drawn(bsdf, degrees)
+        count, lost, mean, error, broken, a, b = drawn(bsdf, degrees, (seed, degrees))
         sums.append(mass.sum() + lost)
         least_p = min(least_p, shape_p(mass, count))
         c = np.argmax(albedo)
@@ -228,13 +228,16 @@ def main(program, parts):
     row("material", "the doctor", "s (processor)", "integral of pdf + lost", "least p of χ²", "mean weight / albedo - 1",
         "weight × pdf, and pdf(): off by", "integral below", "NaN")
     row("---", "---", "---:", "---:", "---:", "---:", "---:", "---:", "---:")
-    for name, description in materials.items():
+    sentences = []
+    for number, (name, description) in enumerate(materials.items()):
         if parts and not any(part in name for part in parts):
             continue
-        said, clock, cpu = diagnosed(program, description)
-        skipped = said.startswith("refused") or any(part in name for part in NARROW)
-        found = ["–"] * 6 if skipped else checked(mi.load_dict(description))
+        said, words, clock, cpu = diagnosed(program, description)
+        sentences += [f"* {name}: {sentence}." for sentence in words]
+        skipped = said == "refused" or any(part in name for part in NARROW)
+        found = ["–"] * 6 if skipped else checked(mi.load_dict(description), number)
         row(name, said, f"{clock:.1f} ({cpu:.1f})", *found)
+    print("\nIn its words:\n\n" + "\n".join(sentences))
 
 
 if __name__ == "__main__":
