@@ -327,14 +327,6 @@ inline std::vector<Entry> faults() {
          });
        })},
       {"density below the horizon, drawn again", "below_horizon", each([] { return power_lobe(true); })},
-      {"the same, and pdf is 0 there", "below_horizon", each([] {
-         return with_directions(
-             metal(), [own = directions_of(lobes({{1, visible_normals(0.3f)}}))](Direction wo, Pcg32& u) {
-               auto wi = own(wo, u);
-               while (!wi) wi = own(wo, u);
-               return wi;
-             });
-       })},
       {"directions below the horizon", "draws_below_horizon", each([] {
          return with_draw(metal(), [](Direction, std::size_t number, PatientDraw& d, std::span<double>) {
            if (number % 20 == 0) d.wi.z = -d.wi.z;
