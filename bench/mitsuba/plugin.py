@@ -5,7 +5,7 @@
     PYTHONPATH=build/python python bench/mitsuba/plugin.py [chi2] [table] [pictures] [loads] [scenes] > report.md
 
 Needs mitsuba and numpy; LLVM variants need LLVM 16 or later (DRJIT_LIBLLVM_PATH). REFLECTREE_DATA names the folder of
-measured files; without it they are left out, with a sentence."""
+measured files; without it they are left out, with a sentence. EFFORT=quick makes the scenes small."""
 
 import glob
 import os
