@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The BSDF `reflectree` inside Mitsuba 3: Mitsuba's own chi-square test, times and variances, pictures, in Markdown.
 
-    PYTHONPATH=build/python python bench/mitsuba/plugin.py [chi2] [table] [pictures] [loads] [families] > report.md
+    PYTHONPATH=build/python python bench/mitsuba/plugin.py [PART...] > report.md
 
-Needs mitsuba and numpy; LLVM variants need LLVM 16 or later (DRJIT_LIBLLVM_PATH). REFLECTREE_DATA names the folder of
-measured files; without it they are left out, with a sentence.
+PART is chi2, table, pictures, loads, families or scenes; without any, all of them. Needs mitsuba and numpy; LLVM
+variants need LLVM 16 or later (DRJIT_LIBLLVM_PATH). REFLECTREE_DATA names the folder of measured files; without it they
+are left out, with a sentence. EFFORT=quick makes the scenes small.
 
     VARIANT=scalar_rgb NATIVE=build-mitsuba PYTHONPATH=build/python python bench/mitsuba/plugin.py chi2 pictures
 
@@ -155,13 +156,15 @@ def patient(description, degrees, turn, uv):
     return one_by_one.sample, one_by_one.pdf
 
 
-def judged(description, degrees, count, finest=128, turn=0.0, uv=(0.5, 0.5)):
+def judged(description, degrees, count, finest=128, turn=0.0, uv=(0.5, 0.5), cut=False):
     """(accepted, text) of mitsuba.chi2.ChiSquareTest. What is rejected is judged again by finer trapezoids for the
-    expected counts, of the same samples: their error goes away, a fault stays."""
+    expected counts, of the same samples: their error goes away, a fault stays. cut: pdf counts as 0 below the horizon."""
     ires = 4
+    tilted = degrees == 0 and description["type"] == "reflectree"
+    sample, pdf = patient(description, degrees, turn, uv)
+    density = (lambda wo: dr.select(wo.z > 0, pdf(wo), 0)) if cut else pdf
     while True:
-        sample, pdf = patient(description, degrees, turn, uv)
-        test = ChiSquareTest(SphericalDomain() if degrees else TiltedDomain(), sample, pdf, sample_dim=3, ires=ires)
+        test = ChiSquareTest(TiltedDomain() if tilted else SphericalDomain(), sample, density, sample_dim=3, ires=ires)
         accepted = test.run(test_count=count, quiet=True)
         if accepted or ires >= finest:
             text = f"{test.p_value:.3f}" if not test.fail else f"sum {float(test.pdf_sum[0]):.2f}"
@@ -169,21 +172,31 @@ def judged(description, degrees, count, finest=128, turn=0.0, uv=(0.5, 0.5)):
         ires = 4 * ires if ires < 64 else finest
 
 
+def own_sampler(description, count):
+    """(text, how many angles do not pass, how many of them do not where pdf is 0 below the horizon)."""
+    if description["type"] == "eval_alone":
+        return "has none", 0, 0
+    failed = [a for a in ANGLES if not judged(description, a, count)[0]]
+    still = [a for a in failed if not judged(description, a, count, cut=True)[0]]
+    text = f"{len(ANGLES) - len(failed)} of {len(ANGLES)}"
+    return text + (f"; cut at the horizon {len(ANGLES) - len(still)}" if failed else ""), len(failed), len(still)
+
+
 def chi2_table(title, materials):
     count = len(materials) * len(ANGLES)
     print(f"\n### {title}\n")
     row("material", *(f"{a}°" for a in ANGLES), "ours", "Mitsuba's own sampler")
     row("---", *["---:"] * len(ANGLES), "---", "---")
-    all_passed, own_failed = 0, 0
+    all_passed, own_failed, own_failed_cut = 0, 0, 0
     for name, description in materials.items():
         found = [judged(ours(description), a, count) for a in ANGLES]
-        own = None if description["type"] == "eval_alone" else [judged(description, a, count, 16)[0] for a in ANGLES]
         passed = sum(ok for ok, _ in found)
         all_passed += passed
-        own_failed += 0 if own is None else len(own) - sum(own)
-        row(name, *(text for _, text in found), f"{passed} of {len(found)}",
-            "has none" if own is None else f"{sum(own)} of {len(own)}")
-    print(f"\n{all_passed} of {count} pass with ours; of Mitsuba's own samplers {own_failed} do not pass up to (16).")
+        own = own_sampler(description, count)
+        own_failed, own_failed_cut = own_failed + own[1], own_failed_cut + own[2]
+        row(name, *(text for _, text in found), f"{passed} of {len(found)}", own[0])
+    print(f"\n{all_passed} of {count} pass with ours; of Mitsuba's own samplers {own_failed} do not, and {own_failed_cut} where "
+          "pdf counts as 0 below the horizon.")
     return all_passed == count
 
 
@@ -248,8 +261,8 @@ def chi2():
     print(f"\n## Mitsuba's chi-square test, {VARIANT}\n\nmitsuba.chi2.ChiSquareTest with BSDFAdapter, 10⁶ samples, "
           "significance 0.01 with the Šidák correction of each table. The p-value, and in brackets ires, the points per cell "
           "and axis from which expected counts are made, where Mitsuba's own 4 were too few. At 0° the grid's pole is tilted away by one "
-          "radian: our map's own pole is there, where the density has an integrable peak that the trapezoids of the grid "
-          "overrate.")
+          "radian for ours: our map's own pole is there, where the density has an integrable peak that the trapezoids of the "
+          "grid overrate.")
     wide = dict(MATERIALS)
     if not MEASURED:
         print("\nREFLECTREE_DATA names no folder with rgl/*.bsdf: measured materials are left out.")
@@ -497,9 +510,171 @@ def picture_table(chosen):
     return good
 
 
+# ---- Three scenes at equal time
+
+EFFORTS = {"quick": (48, 16, 8, 16), "default": (96, 64, 24, 64)}  # pixels, spp, seeds, reference over a picture
+EPSILON, TRIMMED = 0.01, 0.001
+
+
+def matrix():
+    return mi.ScalarTransform4f()
+
+
+def camera(pixels, origin, target, fov):
+    return {"type": "perspective", "fov": fov, "to_world": matrix().look_at(origin, target, [0, 0, 1]),
+            "film": {"type": "hdrfilm", "width": pixels, "height": pixels * 2 // 3, "rfilter": {"type": "box"}},
+            "sampler": {"type": "independent"}}
+
+
+def rgb(*value):
+    return {"type": "rgb", "value": list(value)}
+
+
+def lamp(center, radius, *radiance):
+    return {"type": "sphere", "center": center, "radius": radius, "emitter": {"type": "area", "radiance": rgb(*radiance)}}
+
+
+def plates(pixels, bsdf):
+    """Four plates of growing roughness, tilted so that each mirrors the lamps, as in Veach's scene; a dim sky."""
+    kinds = ({"type": "roughconductor", "distribution": "ggx", "alpha": 0.03, "material": "Al"},
+             {"type": "principled", "roughness": 0.3, "metallic": 0.9, "base_color": rgb(0.9, 0.7, 0.4)},
+             {"type": "roughplastic", "distribution": "ggx", "alpha": 0.15, "diffuse_reflectance": rgb(0.1, 0.2, 0.3)},
+             {"type": "roughconductor", "distribution": "ggx", "alpha": 0.4, "material": "Cu"})
+    scene = {"type": "scene", "integrator": {"type": "path", "max_depth": 4},
+             "sensor": camera(pixels, [0, -9, 4], [0, 0, 1.2], 38),
+             "sky": {"type": "constant", "radiance": rgb(0.03, 0.04, 0.05)},
+             "small": lamp([-2.4, 1.5, 4.5], 0.05, 900, 900, 900), "middle": lamp([0, 1.5, 4.5], 0.25, 36, 40, 36),
+             "large": lamp([2.4, 1.5, 4.5], 0.7, 5, 5, 6),
+             "floor": {"type": "rectangle", "to_world": matrix().scale(20), "bsdf": {"type": "diffuse"}}}
+    for k, kind in enumerate(kinds):
+        y = 1.6 - 1.3 * k
+        # Half way between the lamps and the camera.
+        normal = sum(np.asarray(v) / np.linalg.norm(v) for v in (np.array([0, 1.5 - y, 3.9]), np.array([0, -9 - y, 3.4])))
+        place = matrix().look_at([0, y, 0.9 - 0.22 * k], [0, float(y + normal[1]), float(0.9 - 0.22 * k + normal[2])], [1, 0, 0])
+        scene[f"plate{k}"] = {"type": "rectangle", "to_world": place @ matrix().scale([0.55, 2.6, 1]), "bsdf": bsdf(kind)}
+    return scene
+
+
+def sun_and_sky(height=128):
+    """A sky that brightens towards the horizon, and a sun of 1.5 degrees that gives three quarters of the floor's light."""
+    theta = (np.arange(height) + 0.5) / height * np.pi
+    phi = (np.arange(2 * height) + 0.5) / height * np.pi
+    t, p = np.meshgrid(theta, phi, indexing="ij")
+    up = np.cos(t)[..., None]
+    sky = np.where(up > 0, (1 - up) * [0.8, 0.8, 0.8] + up * [0.2, 0.35, 0.7], [0.15, 0.13, 0.1])
+    toward = np.cos(t) * np.cos(0.9) + np.sin(t) * np.sin(0.9) * np.cos(p - 2.2)
+    sky[toward > np.cos(np.radians(1.5))] = [4400, 4000, 3200]
+    return {"type": "envmap", "bitmap": mi.Bitmap(sky.astype(np.float32)), "to_world": matrix().rotate([1, 0, 0], 90)}
+
+
+def sun(pixels, bsdf):
+    """Four balls on a dull floor: measured materials where there are some, principled ones elsewhere."""
+    kinds = [{"type": "principled", "roughness": 0.35, "clearcoat": 0.8, "clearcoat_gloss": 0.3, "base_color": rgb(0.6, 0.05, 0.05)},
+             {"type": "principled", "roughness": 0.25, "metallic": 1.0, "base_color": rgb(1, 0.75, 0.35)},
+             {"type": "principled", "roughness": 0.6, "sheen": 0.8, "base_color": rgb(0.2, 0.3, 0.5)},
+             {"type": "principled", "roughness": 0.45, "spec_tint": 0.5, "base_color": rgb(0.2, 0.5, 0.2)}]
+    kinds[2:] = (list(MEASURED.values()) + kinds[2:])[:2]
+    scene = {"type": "scene", "integrator": {"type": "path", "max_depth": 5},
+             "sensor": camera(pixels, [0, -9, 3], [0, 0, 0.8], 36), "sky": sun_and_sky(),
+             "floor": {"type": "rectangle", "to_world": matrix().scale(30),
+                       "bsdf": bsdf({"type": "roughplastic", "alpha": 0.3, "diffuse_reflectance": rgb(0.3, 0.3, 0.3)})}}
+    for k, kind in enumerate(kinds):
+        scene[f"ball{k}"] = {"type": "sphere", "center": [2.1 * k - 3.15, 0, 1], "radius": 1, "bsdf": bsdf(kind)}
+    return scene
+
+
+def interior(pixels, bsdf):
+    """A closed room, lit by a lamp that shines at the ceiling: nearly all light is indirect."""
+    plaster = bsdf({"type": "roughplastic", "alpha": 0.4, "diffuse_reflectance": rgb(0.7, 0.65, 0.6)})
+    wood = bsdf({"type": "principled", "roughness": 0.35, "specular": 0.6, "base_color": rgb(0.45, 0.25, 0.12)})
+    def side(turn, shift, kind):
+        return {"type": "rectangle", "to_world": matrix().translate(shift) @ turn @ matrix().scale(3), "bsdf": kind}
+    def about(axis, degrees):
+        return matrix().rotate(axis, degrees)
+    return {"type": "scene", "integrator": {"type": "path", "max_depth": 10},
+            "sensor": camera(pixels, [0, -2.8, 1.7], [0, 3, 1.3], 70),
+            "floor": side(about([1, 0, 0], 0), [0, 0, 0], wood),
+            "ceiling": side(about([1, 0, 0], 180), [0, 0, 3], {"type": "diffuse", "reflectance": rgb(0.8, 0.8, 0.8)}),
+            "back": side(about([1, 0, 0], 90), [0, 3, 0], plaster),
+            "front": side(about([1, 0, 0], -90), [0, -3, 0], plaster),
+            "left": side(about([0, 1, 0], 90), [-3, 0, 0], bsdf(
+                {"type": "principled", "roughness": 0.5, "base_color": rgb(0.6, 0.1, 0.1), "sheen": 0.5})),
+            "right": side(about([0, 1, 0], -90), [3, 0, 0], bsdf(
+                {"type": "principled", "roughness": 0.5, "base_color": rgb(0.1, 0.3, 0.6)})),
+            "ball": {"type": "sphere", "center": [-1, 1.2, 0.7], "radius": 0.7, "bsdf": bsdf(
+                {"type": "roughconductor", "distribution": "ggx", "alpha": 0.1, "material": "Au"})},
+            "block": {"type": "cube", "to_world": matrix().translate([1.1, 1, 0.6]) @ about([0, 0, 1], 25) @ matrix().scale(
+                [0.5, 0.5, 0.6]), "bsdf": bsdf({"type": "principled", "roughness": 0.4, "metallic": 0.9,
+                                               "base_color": rgb(0.8, 0.8, 0.85)})},
+            "lamp": {"type": "disk", "to_world": matrix().translate([1.8, -1, 2]) @ matrix().scale(0.3),
+                     "emitter": {"type": "area", "radiance": rgb(300, 270, 225)}}}
+
+
+def rel_mse(picture, reference):
+    """Mean of squared errors over squares of the reference, without the largest 0.1 % of pixels."""
+    error = np.mean((picture - reference) ** 2 / (reference**2 + EPSILON * reference.mean() ** 2), axis=2).reshape(-1)
+    return float(np.mean(np.sort(error)[:error.size - int(np.ceil(TRIMMED * error.size))]))
+
+
+def rendered(scene, spp, seed):
+    """(picture, seconds of the processor)"""
+    start = time.process_time()
+    picture = np.array(mi.render(scene, spp=spp, seed=seed))[..., :3].astype(np.float64)
+    return picture, time.process_time() - start
+
+
+def ratio_of_means(a, b):
+    """mean(a) / mean(b) of independent runs, and its standard error."""
+    a, b = np.asarray(a), np.asarray(b)
+    ratio = a.mean() / b.mean()
+    return ratio, ratio * np.sqrt(a.var(ddof=1) / (a.size * a.mean() ** 2) + b.var(ddof=1) / (b.size * b.mean() ** 2))
+
+
+def scenes():
+    dr.set_thread_count(1)
+    pixels, spp, seeds, longer = EFFORTS[os.environ.get("EFFORT", "default")]
+    print(f"\n## Three scenes at equal time, {VARIANT}\n\n{pixels} × {pixels * 2 // 3} pixels, path tracing with both "
+          f"strategies combined. Mitsuba's BSDFs with {spp} paths per pixel, and the same BSDFs inside `reflectree`, "
+          f"diffuse ones left alone, with as many paths as take the same processor time; {seeds} pictures of each, in "
+          "turn, one thread, kernels compiled before. relMSE is the mean over pixels and channels of (x - r)² / "
+          f"(r² + {EPSILON} m²) without the largest 0.1 % of pixels; r is the mean of {longer * spp} paths with "
+          "Mitsuba's BSDFs, and m the mean of r. Ratios are ours over Mitsuba's; below 1 we win. The first is that of "
+          "relMSE times time, the product of the two that follow. With exact mode the weight of a sampled direction is "
+          "constant: what the fourth leaves is no sampler's of directions.\n")
+    row("scene", "paths", "s", "relMSE", "relMSE at equal time", "relMSE at equal paths", "time per path",
+        "relMSE at equal paths, exact mode", "twin: Mitsuba's, 3 % brighter")
+    row("---", *["---:"] * 8)
+    good = True
+    for name, make in {"plates": plates, "sun": sun, "interior": interior}.items():
+        own, mine = mi.load_dict(make(pixels, lambda d: d)), mi.load_dict(make(pixels, ours))
+        reference = np.mean([rendered(own, spp, 10_000 + k)[0] for k in range(longer)], axis=0)
+        # How many paths of ours take as long: by the median of some, after one that compiles.
+        cost = []
+        for scene in (own, mine):
+            rendered(scene, spp, 1)
+            cost.append(np.median([rendered(scene, spp, k)[1] for k in range(2, 7)]))
+        ours_spp = max(1, round(spp * cost[0] / cost[1]))
+        rendered(mine, ours_spp, 1)
+        found = {own: [], mine: []}
+        for k in range(seeds):
+            for scene, paths in ((own, spp), (mine, ours_spp)):
+                picture, seconds_taken = rendered(scene, paths, 100 + k + (5000 if scene is mine else 0))
+                found[scene].append((rel_mse(picture, reference), seconds_taken, rel_mse(picture * 1.03, reference)))
+        exact = mi.load_dict(make(pixels, lambda d: ours(d, mode="exact")))
+        best = [rel_mse(rendered(exact, spp, 20_000 + k)[0], reference) for k in range(seeds)]
+        (a, s, twin), (b, t, _) = (np.array(found[scene]).T for scene in (own, mine))
+        s, t = np.median(s), np.median(t)
+        quality, error = ratio_of_means(b, a)
+        time_ratio, path_ratio = t / s, (t / ours_spp) / (s / spp)
+        good &= twin.mean() > a.mean()
+        row(name, f"{spp} / {ours_spp}", f"{s:.3f} / {t:.3f}", f"{a.mean():.4g} / {b.mean():.4g}",
+            f"{quality * time_ratio:.3f} ± {error * time_ratio:.3f}", f"{quality * ours_spp / spp:.3f}", f"{path_ratio:.3f}",
+            "{:.3f} ± {:.3f}".format(*ratio_of_means(best, a)), f"{twin.mean() / a.mean():.2f}")
+    return good
+
+
 def main(parts):
-    known = {"chi2": chi2, "table": table, "loads": loads, "pictures": pictures,
-             "families": families}
+    known = {"chi2": chi2, "table": table, "loads": loads, "pictures": pictures, "families": families, "scenes": scenes}
     unknown = set(parts) - set(known)
     if unknown:
         sys.exit(f"{sorted(unknown)} is no part; say {', '.join(known)}")

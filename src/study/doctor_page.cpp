@@ -24,7 +24,7 @@ std::string pair_text(const Evidence& e) {
     return "(" + number(double(w.x), 6) + ", " + number(double(w.y), 6) + ", " + number(double(w.z), 6) + ")";
   };
   if (e.wo.x == 0 && e.wo.y == 0 && e.wo.z == 0) return "";
-  std::string text = "wo " + vector(e.wo) + ", wi " + vector(e.wi);
+  std::string text = "wo " + vector(e.wo) + (e.wi == Direction{} ? "" : ", wi " + vector(e.wi));
   if (!e.quantity.empty())
     text += ": " + e.quantity + " is " + pretty(e.found, 6) + ", expected " + pretty(e.expected, 6);
   return text;

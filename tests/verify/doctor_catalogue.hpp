@@ -110,6 +110,12 @@ inline std::vector<Entry> faults() {
        each([] { return with_pdf(plastic(), [](Direction, Direction, double p) { return 1.1 * p; }); })},
       {"a bias of 0.5 % in the pdf", "pdf_scaled",
        each([] { return with_pdf(plastic(), [](Direction, Direction, double p) { return 1.005 * p; }); })},
+      // As of an approximate masking function, which is in the pdf and not in the sampler.
+      {"a factor that depends on wo", "pdf_normalisation", each([] {
+         return with_pdf(metal(), [](Direction wo, Direction, double p) {
+           return (1 + 0.03 * std::cos(8 * double(wo.z))) * p;
+         });
+       })},
       {"a bias of 0.5 % in the weight", "weight_scaled",
        each([] { return with_weight(plastic(), [](Direction, Direction, double) { return 1.005; }); })},
       {"wrong mixture weight", "mixture_weight",

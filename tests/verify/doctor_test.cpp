@@ -106,6 +106,36 @@ TEST(QuickDoctor, DetectsConventions) {
   EXPECT_NE(causes_of(twin).find(" weight_cosine_missing "), std::string::npos) << all_words(twin);
 }
 
+// Lost draws keep their directions below the horizon. What pdf says there may be their density; anything else is
+// told, and is no fault, since nothing there carries a weight.
+TEST(QuickDoctor, RemarksOnPdfBelowTheHorizon) {
+  const auto remarks = [](double factor) {
+    Patient p = catalogue::diffuse();
+    p.pdf = [factor](std::span<const Direction>, std::span<const Direction> wi, std::span<double> out) {
+      for (std::size_t i = 0; i < wi.size(); ++i) out[i] = (wi[i].z > 0 ? 1 : factor) / (4 * pi_v<double>);
+    };
+    p.sample = [pdf = p.pdf](std::span<const Direction> wo, std::uint64_t seed, std::span<PatientDraw> draws,
+                             std::span<double> values) {
+      Pcg32 u(seed);
+      for (std::size_t i = 0; i < wo.size(); ++i) {
+        const double z = 1 - 2 * to_unit_double(u()), phi = 2 * pi_v<double> * to_unit_double(u()),
+                     r = std::sqrt(1 - z * z);
+        draws[i] = {
+            {float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)}, 0.25 / pi_v<double>, true};
+        for (std::size_t c = 0; c < values.size() / wo.size(); ++c)
+          values[i * (values.size() / wo.size()) + c] = z > 0 ? 0.5 * 4 * z : 0;
+      }
+    };
+    const Diagnosis d = doctor(p, doctor_options(DoctorEffort::quick), two_threads());
+    EXPECT_TRUE(d.healthy()) << all_words(d);
+    return std::count_if(d.findings.begin(), d.findings.end(),
+                         [](const Finding& f) { return f.cause == "pdf_below_horizon"; });
+  };
+  EXPECT_EQ(remarks(1), 0);
+  EXPECT_EQ(remarks(0), 0);
+  EXPECT_EQ(remarks(1.2), 1);
+}
+
 TEST(QuickDoctor, RefusesWhatItCannotExamine) {
   Patient p = catalogue::diffuse();
   DoctorOptions options = doctor_options(DoctorEffort::quick);

@@ -30,6 +30,7 @@ constexpr DoctorCause others[] = {
     {"pdf_scaled", "the pdf is the density times a factor"},
     {"below_horizon", "density below the horizon is drawn again, and the pdf does not know"},
     {"pdf_normalisation", "the pdf has the right shape and a wrong integral that depends on wo"},
+    {"pdf_below_horizon", "a remark: pdf is not 0 below the horizon, nor what the lost draws there say"},
     {"draws_f_cos", "directions follow f cos_theta_i exactly, and pdf says something else"},
     {"draws_f", "directions follow f without its cosine"},
     {"draws_cosine", "directions follow a cosine lobe whatever pdf says"},

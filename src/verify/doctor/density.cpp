@@ -112,7 +112,8 @@ DensityVerdict judge_density(const Functions& f, std::span<const ExaminedView> v
                   : shape_holds     ? "pdf and lost draws do not add up to 1"
                                     : "directions do not follow pdf, and no hypothesis explains how";
   const auto pair = simple_pair(f, verdict);
-  finding.evidence = pair ? *pair : worst_bin(*worst);
+  // Where only the total is wrong, no bin says more than another.
+  if (pair || !shape_holds) finding.evidence = pair ? *pair : worst_bin(*worst);
   d.findings.push_back(std::move(finding));
   return verdict;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "below.hpp"
 #include "density.hpp"
 #include "findings.hpp"
 #include "kinds.hpp"
@@ -48,11 +49,13 @@ void judge_below(std::span<const ExaminedView> views, Diagnosis& d) {
 
 void judge_lost(std::span<const ExaminedView> views, Diagnosis& d) {
   for (const ExaminedView& v : views) {
-    d.checks.push_back(limited("finite", v.broken, 0, "draws that are not finite", v.where));
-    if (v.broken > 0 && !named(d, "not_finite")) {
+    const bool values = v.broken == 0 && v.broken_values > 0;
+    const double count = values ? v.broken_values : v.broken;
+    d.checks.push_back(limited("finite", count, 0, "draws that are not finite", v.where));
+    if (count > 0 && !named(d, "not_finite")) {
       char words[120];
-      std::snprintf(words, sizeof words, "%.3g %% of what sample returns is NaN or infinite",
-                    100 * v.broken / v.draws);
+      std::snprintf(words, sizeof words, "%s of %.3g %% of the draws is NaN or infinite",
+                    values ? "the value" : "the direction or the pdf", 100 * count / v.draws);
       d.findings.push_back(a_finding("finite", "not_finite", words, {v.wo, {}, {}, 0, 0}));
     }
     if (v.draws > 0 && v.broken == 0 && v.lost == v.draws && v.albedo > 1e-3) {
@@ -125,6 +128,7 @@ Diagnosis doctor(const Patient& patient, const DoctorOptions& options, const Hos
       d.findings.back().figures.push_back({"mean_weight_over_albedo", v.where, sum / v.draws / v.albedo});
     }
   }
+  remark_on_pdf_below(f, views, d);
   remark_on_physics(f, views, options.seed, d);
   measure_quality(f, views, d);
   for (const ExaminedView& v : views) d.views.push_back(v);
@@ -144,7 +148,7 @@ std::string to_text(const Finding& finding) {
   out += "\n";
   const Evidence& e = finding.evidence;
   if (e.wo.z == 0 && e.wo.x == 0) return out;
-  out += "        wo " + in_words(e.wo) + ", wi " + in_words(e.wi);
+  out += "        wo " + in_words(e.wo) + (e.wi == Direction{} ? "" : ", wi " + in_words(e.wi));
   if (!e.quantity.empty()) {
     std::snprintf(buffer, sizeof buffer, ": %s is %.6g, expected %.6g", e.quantity.c_str(), e.found,
                   e.expected);

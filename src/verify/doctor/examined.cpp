@@ -118,12 +118,18 @@ void keep(const Functions& f, const Drawn& drawn, ExaminedView& view) {
     view.order.push_back(-1);
     if (is_lost(d, values, f.has_pdf())) {
       ++view.lost;
+      if (d.drawn && is_finite(d.wi) && d.wi.z < 0) {
+        ++view.draws_lost_below;
+        if (view.lost_below.size() < 256) view.lost_below.push_back(d.wi);
+      }
       continue;
     }
     if (!is_finite(d.wi) || !std::isfinite(d.pdf)) {
       ++view.broken, ++view.lost;
       continue;
     }
+    view.broken_values +=
+        std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
     if (!(d.wi.z > 0)) {
       view.a_below = d.wi;
       ++view.below;

@@ -28,8 +28,11 @@ struct ExaminedView : DoctorView {
   std::vector<double> light, light2;  // sums of weights and of their squares per bin
   double below = 0;                   // draws below the horizon that carry a weight
   Direction a_below{};
-  double broken = 0;   // draws that are not finite, counted as lost
-  double seconds = 0;  // of drawing
+  double draws_lost_below = 0;  // lost draws whose direction lies below the horizon,
+  Directions lost_below;        // and some of them
+  double broken = 0;            // draws whose direction or pdf is not finite, counted as lost
+  double broken_values = 0;     // draws whose value is not finite, counted as 0
+  double seconds = 0;           // of drawing
 };
 
 std::vector<ExaminedView> examine_views(const Functions& f, const DoctorOptions& options, const Host& host);

@@ -129,7 +129,8 @@ Pointwise draw_pointwise(const Functions& f, int viewers, int draws, std::uint64
 
 std::string in_words(Direction w) {
   char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", double(w.x), double(w.y), double(w.z));
+  // Plus 0, for -0.
+  std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", w.x + 0., w.y + 0., w.z + 0.);
   return buffer;
 }
 

@@ -13,6 +13,13 @@ namespace {
 constexpr double tolerance = 1e-3;       // relative
 constexpr double max_exceptions = 3e-3;  // share of draws: borders of leaves and cells in float
 
+// Rounding makes what was computed from the unrounded cosine another than what the direction says.
+void blame_rounding(const Diagnosis& d, Finding& finding) {
+  const bool rounded = std::any_of(d.findings.begin(), d.findings.end(),
+                                   [](const Finding& x) { return x.cause == "float_precision"; });
+  if (rounded && finding.cause == "unexplained") finding.words += "; it may follow from the rounded cosines";
+}
+
 }  // namespace
 
 PointwiseVerdict check_pointwise(const Functions& f, const Pointwise& draws,
@@ -51,6 +58,7 @@ PointwiseVerdict check_pointwise(const Functions& f, const Pointwise& draws,
       finding.evidence = {draws.wo[worst], draws.wi[worst], "pdf of sample(wo)", draws.pdf[worst],
                           plain[worst].hi};
       finding.figures = {{"share_of_draws", "", off}};
+      blame_rounding(d, finding);
       d.findings.push_back(std::move(finding));
     }
   }
@@ -89,6 +97,7 @@ PointwiseVerdict check_pointwise(const Functions& f, const Pointwise& draws,
   const std::size_t k = worst * f.channels();
   finding.evidence = {draws.wo[worst], draws.wi[worst], "weight * pdf, channel 0", claimed[k], a.f_cos[k].hi};
   finding.figures = {{"share_of_draws", "", off}};
+  blame_rounding(d, finding);
   d.findings.push_back(std::move(finding));
   return verdict;
 }

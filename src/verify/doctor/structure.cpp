@@ -88,21 +88,27 @@ double widest_occupancy(const ExaminedView& view) {
 
 // sin^2 of the half vector or of the angle to the mirror direction in units of 2^-23, which is what
 // 1 - c^2 steps by where c is a float near 1: mean resultant length of their phases. 1 for rounded cosines.
-double float_steps(const ExaminedView& view) {
+struct FloatSteps {
+  double length = 0;
+  Direction one{};  // of those directions
+};
+FloatSteps float_steps(const ExaminedView& view) {
   const Vec3<double> wo = normalize(Vec3<double>{view.wo.x, view.wo.y, view.wo.z});
   const Vec3<double> mirror{-wo.x, -wo.y, wo.z};
-  double longest = 0;
+  FloatSteps longest;
   for (const bool half : {true, false}) {
     double c = 0, s = 0, n = 0;
+    Direction one{};
     for (const Direction d : view.wi) {
       const Vec3<double> wi = normalize(Vec3<double>{d.x, d.y, d.z});
       const Vec3<double> v = half ? normalize(wo + wi) : cross(wi, mirror);
       const double steps = (half ? sqr(v.x) + sqr(v.y) : dot(v, v)) * 0x1p23;
       if (!(steps > 0.3 && steps < 40)) continue;
       const double phase = 2 * pi_v<double> * steps;
+      one = d;
       c += std::cos(phase), s += std::sin(phase), ++n;
     }
-    if (n >= 1000) longest = std::max(longest, std::hypot(c, s) / n);
+    if (n >= 1000 && std::hypot(c, s) / n > longest.length) longest = {std::hypot(c, s) / n, one};
   }
   return longest;
 }
@@ -144,7 +150,7 @@ bool check_structure(const Functions&, std::span<const ExaminedView> views, doub
   double most = 0, any = 0, piled = 0, least_occupied = 1, steps = 0, least_p = 1;
   const ExaminedView *most_at = nullptr, *any_at = nullptr, *piled_at = nullptr, *curve_at = nullptr,
                      *steps_at = nullptr, *dependent_at = nullptr;
-  Direction commonest{};
+  Direction commonest{}, on_ring{};
   float clamp = 0;
   int lag_at = 1;
   for (const ExaminedView& view : views) {
@@ -156,8 +162,8 @@ bool check_structure(const Functions&, std::span<const ExaminedView> views, doub
     if (z.most > piled && z.commonest.z < 0.9f) piled = z.most, piled_at = &view, clamp = z.commonest.z;
     const double occupied = view.wi.size() >= 20'000 ? widest_occupancy(view) : 1;
     if (occupied < least_occupied) least_occupied = occupied, curve_at = &view;
-    const double s = float_steps(view);
-    if (s > steps) steps = s, steps_at = &view;
+    const FloatSteps s = float_steps(view);
+    if (s.length > steps) steps = s.length, steps_at = &view, on_ring = s.one;
     for (int lag = 1; lag <= 3; ++lag) {
       const double p = dependence_p(view, lag);
       if (p < least_p) least_p = p, dependent_at = &view, lag_at = lag;
@@ -205,7 +211,7 @@ bool check_structure(const Functions&, std::span<const ExaminedView> views, doub
   if (rounded) {
     add("spread", "float_precision",
         "cosines near 1 are rounded to single precision: the directions of a sharp lobe lie on rings",
-        *steps_at, steps_at->wi[0]);
+        *steps_at, on_ring);
   }
   const bool repeated = !discrete && !curve && !rounded && any > 0.02;
   if (repeated) {

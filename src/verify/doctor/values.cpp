@@ -110,14 +110,24 @@ void check_values(const Functions& f, std::uint64_t seed, Diagnosis& d) {
     const PatientDraw& drawn = draws.draw[i];
     if (!drawn.drawn) continue;
     const double length2 = double(dot(drawn.wi, drawn.wi));
-    bool finite = is_finite(drawn.wi) && std::isfinite(drawn.pdf), sign = drawn.pdf >= 0;
-    for (std::size_t c = 0; c < f.channels(); ++c) {
-      const double v = draws.value[i * f.channels() + c];
-      finite = finite && std::isfinite(v);
-      sign = sign && !(v < 0);
+    bool finite = is_finite(drawn.wi) && std::isfinite(drawn.pdf);
+    // Below the horizon, without a weight, a pdf means nothing: half vectors that look away from wo have a Jacobian
+    // below 0.
+    const auto values = std::span(draws.value).subspan(i * f.channels(), f.channels());
+    bool sign = drawn.pdf >= 0 || (drawn.wi.z < 0 && is_lost(drawn, values, f.has_pdf()));
+    // The pdf is shown, or the value where the pdf is right.
+    const char* what = "sample(wo).pdf";
+    double shown = drawn.pdf;
+    const auto show = [&](double v, bool& right) {
+      if (finite && sign) what = "a value of sample(wo)", shown = v;
+      right = false;
+    };
+    for (const double v : values) {
+      if (!std::isfinite(v)) show(v, finite);
+      if (v < 0) show(v, sign);
     }
-    if (!finite) infinite.add(wo[i], drawn.wi, "sample(wo).pdf", drawn.pdf, 0);
-    if (finite && !sign) negative.add(wo[i], drawn.wi, "sample(wo).pdf", drawn.pdf, 0);
+    if (!finite) infinite.add(wo[i], drawn.wi, what, shown, 0);
+    if (finite && !sign) negative.add(wo[i], drawn.wi, what, shown, 0);
     if (finite && std::abs(length2 - 1) > 1e-3 && length2 > 0) {
       length.add(wo[i], drawn.wi, "|wi|^2", length2, 1);
     }
