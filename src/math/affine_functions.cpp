@@ -25,9 +25,10 @@ AffineForm concave(const AffineForm& x, const Function& f, double t, double alph
 
 // sin and cos where they are concave; place: where the slope is alpha.
 template <class Function, class Place>
-AffineForm circular(const AffineForm& x, const Function& f, const Place& place, RealInterval range) {
+AffineForm circular(const AffineForm& x, const Function& f, const Place& place, RealInterval concave_in,
+                    RealInterval range) {
   const double a = x.range.lo, b = x.range.hi;
-  if (!(a >= 0 && b <= 1.5707963267948966)) return only_range(range, library);
+  if (!concave_in.contains(x.range)) return only_range(range, library);
   const double alpha = b - a > 1e-7 ? (f(b).value - f(a).value) / (b - a) : f(0.5 * (a + b)).slope;
   return concave(x, f, std::clamp(place(alpha), a, b), alpha, range, library);
 }
@@ -96,13 +97,14 @@ AffineForm sin(const AffineForm& the_x) {
   const Settled settled(the_x);
   const auto f = [](double v) { return Curve{std::sin(v), std::cos(v)}; };
   const auto place = [](double slope) { return std::acos(std::clamp(slope, -1., 1.)); };
-  return circular(settled.form(), f, place, sin(settled.form().range));
+  return circular(settled.form(), f, place, {0, 3.1415926535897931}, sin(settled.form().range));
 }
 AffineForm cos(const AffineForm& the_x) {
   const Settled settled(the_x);
   const auto f = [](double v) { return Curve{std::cos(v), -std::sin(v)}; };
   const auto place = [](double slope) { return std::asin(std::clamp(-slope, -1., 1.)); };
-  return circular(settled.form(), f, place, cos(settled.form().range));
+  return circular(settled.form(), f, place, {-1.5707963267948966, 1.5707963267948966},
+                  cos(settled.form().range));
 }
 AffineForm acos(const AffineForm& x) { return only_range(acos(x.range), library); }
 AffineForm atan2(const AffineForm& y, const AffineForm& x) {

@@ -29,8 +29,9 @@ DomainPointT<AffineForm> lifted_box(const Domain& domain, const Box& box) {
   const AffineForm theta = AffineForm::variable(0, box.lo[0], box.hi[0]);
   AffineForm c = widened(cos(theta), length_tolerance), s = widened(sin(theta), length_tolerance);
   c.range.hi = std::min(c.range.hi, 1.);
-  return lifted(domain, s, c, AffineForm::variable(1, box.lo[1], box.hi[1]),
-                AffineForm::variable(2, box.lo[2], box.hi[2]));
+  return lift_box(
+      domain, {s, AffineForm(0), c},
+      {AffineForm::variable(1, box.lo[1], box.hi[1]), AffineForm::variable(2, box.lo[2], box.hi[2])});
 }
 
 Box random_box(Pcg32& bits) {
@@ -148,6 +149,91 @@ TYPED_TEST(ModelEnclosure, SharperBoxesGiveSharperBounds) {
     ++looked, sharper += narrow < 0.6 * wide;
   }
   EXPECT_EQ(sharper, looked);
+}
+
+// Boxes where wo and wi graze and nearly cancel, or where wi comes back: their half vectors are small differences.
+Box grazing_box(DomainKind kind, Pcg32& bits) {
+  const auto tiny = [&] { return std::pow(2., -16 * uniform(bits)); };
+  Box box;
+  // Distances from grazing, from x = -1 or 0 and from the rim or the pole.
+  const double c = std::max(tiny(), 1e-5), width = 0.3 * tiny();
+  const double theta = std::acos(c);
+  box.lo[0] = theta - width * c, box.hi[0] = std::min(theta + width * c, std::acos(double(0x1p-17)));
+  const bool directions = kind == DomainKind::equal_area || kind == DomainKind::projected_disk;
+  const double from_x = tiny(), from_y = tiny();
+  box.lo[1] = directions ? -1 + from_x : from_x * (uniform(bits) < 0.5 ? -1 : 1);
+  box.lo[2] = directions ? 1 - from_y : from_y;
+  const auto wide = [&](double from) { return std::max(width * from, 0x1p-21); };
+  box.hi[1] = std::min(box.lo[1] + wide(from_x), 1.), box.hi[2] = std::min(box.lo[2] + wide(from_y), 1.);
+  box.lo[1] = std::min(box.lo[1], 1 - 0x1p-21), box.lo[2] = std::min(box.lo[2], 1 - 0x1p-21);
+  for (std::size_t k = 1; k < 3; ++k) {
+    volatile float lo = float(box.lo[k]), hi = float(box.hi[k]);
+    box.lo[k] = double(lo), box.hi[k] = double(hi);
+  }
+  return box;
+}
+
+// Values of the geometry that forms, changed by `tamper`, do not hold; viewers are as long as they may be.
+template <class Tamper>
+std::size_t missed_geometries(int boxes, const Tamper& tamper) {
+  constexpr DomainKind grazing_kinds[] = {DomainKind::equal_area, DomainKind::projected_disk,
+                                          DomainKind::back_vector, DomainKind::half_vector,
+                                          DomainKind::mirror_vector};
+  Pcg32 bits(11);
+  std::size_t missed = 0;
+  for (int i = 0; i < boxes; ++i) {
+    const Domain domain{grazing_kinds[std::size_t(i) % std::size(grazing_kinds)], Symmetry::mirror, 1.5f};
+    const Box box = grazing_box(domain.kind, bits);
+    const auto of = [](const auto& g) {
+      const auto back = back_geometry(g);
+      return std::array{g.wh.x,    g.wh.y,    g.wh.z,    g.cos_theta_d,
+                        back.wh.x, back.wh.y, back.wh.z, back.cos_theta_d};
+    };
+    const auto forms = of(lifted_box(domain, box).geometry);
+    for (int k = 0; k < 6; ++k) {
+      std::array<double, 3> at{};
+      for (std::size_t a = 0; a < 3; ++a) {
+        volatile float place = float(box.at(a, k < 3 ? uniform(bits) : double(bits() & 1U)));
+        at[a] = a == 0 ? box.at(a, uniform(bits)) : std::clamp(double(place), box.lo[a], box.hi[a]);
+      }
+      const double longer = 1 + 0.9 * length_tolerance * (2 * uniform(bits) - 1);
+      const auto values = of(lifted(domain, float(longer * std::sin(at[0])), float(longer * std::cos(at[0])),
+                                    float(at[1]), float(at[2]))
+                                 .geometry);
+      for (std::size_t j = 0; j < values.size(); ++j)
+        missed += !holds(tamper(forms[j]), box, at, double(values[j]));
+    }
+  }
+  return missed;
+}
+
+TEST(GrazingEnclosure, HoldsHalfVectorsOfDirectionsThatNearlyCancel) {
+  EXPECT_EQ(missed_geometries(6000, [](const AffineForm& f) { return f; }), 0U);
+}
+TEST(GrazingEnclosureTwin, WrongFormsAreFound) {
+  const auto by_line = [](AffineForm f) {
+    f.range = RealInterval::whole();
+    return f;
+  };
+  EXPECT_GT(missed_geometries(2000,
+                              [&](AffineForm f) {
+                                f.error *= 0.5;
+                                return by_line(f);
+                              }),
+            0U);
+  EXPECT_GT(missed_geometries(2000,
+                              [&](AffineForm f) {
+                                f.slope[1] = -f.slope[1];
+                                return by_line(f);
+                              }),
+            0U);
+  EXPECT_GT(missed_geometries(2000,
+                              [](AffineForm f) {
+                                f.range.hi -= 1e-4 * (f.range.hi - f.range.lo) + 2e-6;
+                                f.error = detail::infinity;
+                                return f;
+                              }),
+            0U);
 }
 
 }  // namespace

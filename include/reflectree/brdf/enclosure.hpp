@@ -4,29 +4,93 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/math/affine_form.hpp"
 
 namespace reflectree {
 
+// The geometry over a box has one thing more where the map knows it (enclosed_map.hpp): the half vector of wo and
+// of wi mirrored about the normal, and its cosine with wo.
+struct BackVector {
+  Vec3<AffineForm> wh;
+  AffineForm cos_theta_d;
+};
+template <>
+struct ShadingGeometry<AffineForm> {
+  Vec3<AffineForm> wo, wi, wh;
+  AffineForm cos_theta_o, cos_theta_i, cos_theta_h, cos_theta_d;
+  std::optional<BackVector> back = std::nullopt;
+};
+
 // wo + wi over a box, as in shading_geometry.hpp. Where the two may point apart the float formula takes out what
-// the sum has along the difference, (|wo|^2 - |wi|^2) / |wo - wi|. Both lengths are 1 up to length_tolerance,
-// and |wo - wi|^2 > 2 there: the correction, with the roundings of its own, is less than 4 length_tolerance.
+// the sum has along the difference m: h - k m, k = (|wo|^2 - |wi|^2) / |m|^2. Both lengths are 1 up to
+// length_tolerance, and |m|^2 > 2 there: the correction, with the roundings of its own, is less than
+// 4 length_tolerance, and |k| less than 2.5.
+// That is much where wo and wi nearly cancel. But what is left is orthogonal to m, and so for wo.y = 0
+//   h.x = (h.y wi.y - h.z (wo.z - wi.z)) / m.x,  h.y = (1 + k) wi.y,  h.z = wo.z + wi.z - k (wo.z - wi.z),
+// of which only h.x is rounded by more than itself: by less than 10 u |h| + 10 u 4 length_tolerance, u = 2^-24.
 inline constexpr double length_tolerance = 1e-6;
 inline Vec3<AffineForm> sum_of_directions(const Vec3<AffineForm>& wo, const Vec3<AffineForm>& wi) {
-  Vec3<AffineForm> h = wo + wi;
-  if (dot(wo, wi).range.lo >= 0) return h;
-  const AffineForm mended = AffineForm::anything_in({-4 * length_tolerance, 4 * length_tolerance});
-  return {h.x + mended, h.y + mended, h.z + mended};
+  const Vec3<AffineForm> h = wo + wi;
+  const RealInterval cosine = dot(wo, wi).range;
+  if (cosine.lo >= 0) return h;
+  constexpr double most = 4 * length_tolerance, u = 0x1p-24;
+  const AffineForm mended = AffineForm::anything_in({-most, most});
+  const Vec3<AffineForm> plain{h.x + mended, h.y + mended, h.z + mended};
+  const AffineForm apart = wo.x - wi.x;
+  if (wo.y.range.magnitude() > 0 || !(apart.range.lo > 0.5)) return plain;
+  const AffineForm y = widened(h.y, 2.5 * length_tolerance), z = widened(h.z, 2.5 * length_tolerance);
+  const AffineForm x = (y * wi.y - z * (wo.z - wi.z)) / apart;
+  const double size = x.range.magnitude() + y.range.magnitude() + z.range.magnitude();
+  const double off = 10 * u * (size + most) + (cosine.hi < 0 ? 0 : most);
+  return {narrower(plain.x, x + AffineForm::anything_in({-off, off})), narrower(plain.y, y),
+          narrower(plain.z, z)};
+}
+
+// wh and wh.wo from the ratios of the sum's coordinates: at grazing all of them are as small as the cosine of
+// wo. What the float formula rounds is relative: the sum's square errs by 3 u, the inverse of its root by 4 u.
+inline ShadingGeometry<AffineForm> shading_geometry(const Vec3<AffineForm>& wo, const Vec3<AffineForm>& wi) {
+  constexpr double share = 8 * 0x1p-24;
+  const Vec3<AffineForm> h = sum_of_directions(wo, wi);
+  if (!(h.z.range.lo > 1e-14)) return shading_geometry<AffineForm>(wo, wi);
+  const AffineForm x = h.x / h.z, y = h.y / h.z;
+  const AffineForm nn = AffineForm(1) + (sqr(x) + sqr(y));
+  const AffineForm root = sqrt(nn), cosine = widened(AffineForm(1) / root, share);
+  Vec3<AffineForm> wh{x * cosine, y * cosine, cosine};
+  for (AffineForm* v : {&wh.x, &wh.y, &wh.z}) v->range = intersection(v->range, {-1 - share, 1 + share});
+  return {wo, wi, wh, wo.z, wi.z, wh.z, widened(AffineForm(0.5) * h.z * root, share)};
+}
+
+// For retro_reflector.hpp.
+inline ShadingGeometry<AffineForm> back_geometry(const ShadingGeometry<AffineForm>& g) {
+  const Vec3<AffineForm> wi = mirror_direction(g.wi);
+  if (!g.back) return shading_geometry(g.wo, wi);
+  return {g.wo, wi, g.back->wh, g.wo.z, wi.z, g.back->wh.z, g.back->cos_theta_d};
+}
+
+// The same for wi on the other side of the plane of wo, where wo has no y.
+inline ShadingGeometry<AffineForm> mirrored_in_plane(ShadingGeometry<AffineForm> g) {
+  g.wi.y = -g.wi.y, g.wh.y = -g.wh.y;
+  if (g.back) g.back->wh.y = -g.back->wh.y;
+  return g;
 }
 
 // x^2 + y^2 of a unit vector is 1 - z^2, too: of the two forms the narrower. What lengths, and both formulas,
 // round is less than 3 length_tolerance.
 inline AffineForm sin2_theta(const Vec3<AffineForm>& w) {
-  const AffineForm plain = w.x * w.x + w.y * w.y;
+  const AffineForm plain = sqr(w.x) + sqr(w.y);
   const AffineForm slack = AffineForm::anything_in({-3 * length_tolerance, 3 * length_tolerance});
   return narrower(plain, AffineForm(1) - sqr(w.z) + slack);
+}
+
+// For ggx.hpp. Of a unit vector it is alpha^2 + (1 - alpha^2) sin^2, too: where nothing else is known of w it is no less than
+// alpha^2. The length that a half vector rounds to errs by less than 16 u, and so does this.
+inline AffineForm stretched_sin2_theta(const Vec3<AffineForm>& w, const AffineForm& alpha) {
+  const AffineForm sin2 = sin2_theta(w), alpha2 = sqr(alpha);
+  const AffineForm plain = sin2 + sqr(alpha * w.z);
+  return narrower(plain, widened(alpha2 + (AffineForm(1) - alpha2) * sin2, 20 * 0x1p-24));
 }
 
 // What encloses a function of three channels (a grey one has three that are equal): every value that it returns

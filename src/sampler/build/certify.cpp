@@ -41,10 +41,10 @@ std::vector<SlabProof> slabs_of(const PackedSampler& packed) {
 
 void check(const CertifyOptions& o) {
   if (o.tolerance > 0 && o.tolerance <= 1 && o.loosest >= o.tolerance && o.loosest <= 1 &&
-      o.boxes_per_leaf >= 1)
+      o.boxes_per_leaf >= 1 && o.trials >= 1)
     return;
-  throw Error("tolerance and loosest are not in (0, 1], or there is no box to look at", "certification",
-              "take the defaults");
+  throw Error("tolerance and loosest are not in (0, 1], trials are below 1, or there is no box to look at",
+              "certification", "take the defaults");
 }
 
 // An enclosure may be that of another function, as when traits are copied: values at points tell.
@@ -59,6 +59,71 @@ void check_enclosure(const EnclosedField& field, const std::vector<SlabProof>& s
                           double(to_unit_float(u()))};
       check_value(field.over({at, at}, slab.cosines, leaf), field.at(at, slab.cosines, leaf));
     }
+  }
+}
+
+struct Task {
+  std::uint32_t slab, leaf;
+};
+
+// Replaces the proofs of leaves that have none, or by lower bounds. progress: where it begins and ends.
+void prove(std::vector<SlabProof>& slabs, const std::vector<Task>& tasks, const EnclosedField& field,
+           const ProofLimits& limits, const Host& host, float progress, float progress_end) {
+  // The error of the first leaf wins, so that the message does not depend on the threads.
+  std::mutex mutex;
+  std::size_t first_bad = tasks.size();
+  std::exception_ptr error;
+  constexpr std::size_t batch = 64;
+  for (std::size_t first = 0; first < tasks.size() && !error; first += batch) {
+    if (host.cancelled()) throw Cancelled();
+    host.progress(linear_mix(float(first) / float(tasks.size()), progress, progress_end));
+    host.parallel_for(std::min(batch, tasks.size() - first), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = first + begin; t < first + end; ++t) {
+        SlabProof& slab = slabs[tasks[t].slab];
+        LeafProof& kept = slab.proofs[tasks[t].leaf];
+        try {
+          LeafProof proof = prove_leaf(field, slab.cosines, slab.leaves[tasks[t].leaf], limits);
+          proof.boxes += kept.boxes;
+          proof.seen = std::max(proof.seen, kept.seen);
+          const bool better = !kept.proved || (proof.proved && proof.bound < kept.bound);
+          if (!better) proof.proved = kept.proved, proof.bound = kept.bound;
+          kept = proof;
+        } catch (...) {
+          const std::lock_guard<std::mutex> lock(mutex);
+          if (t < first_bad) first_bad = t, error = std::current_exception();
+        }
+      }
+    });
+  }
+  if (error) std::rethrow_exception(error);
+}
+
+// Of a proved slab whose trials rose above `trials` the leaves that are worth another look: those that gain most
+// for the boxes that they took, until it is enough.
+void add_loose_leaves(const SlabProof& slab, std::uint32_t index, double trials, const ProofLimits& limits,
+                      std::vector<Task>& tasks) {
+  struct Gain {
+    double gain, rate;
+    std::uint32_t leaf;
+  };
+  std::vector<Gain> gains;
+  double before = 0, after = 0;
+  for (std::uint32_t k = 0; k < slab.leaves.size(); ++k) {
+    const LeafProof& proof = slab.proofs[k];
+    if (!proof.proved) return;
+    const double area = double(area_of(slab.leaves[k])), height = double(slab.leaves[k].height);
+    before += area * height, after += area * proof.bound;
+    const double gain = area * (proof.bound - std::max(height, proof.seen * (1 + limits.tolerance)));
+    if (gain > 0) gains.push_back({gain, gain / double(proof.boxes), k});
+  }
+  if (!(before <= trials) || after <= trials) return;
+  std::stable_sort(gains.begin(), gains.end(), [](const Gain& a, const Gain& b) { return a.rate > b.rate; });
+  constexpr double safety = 1.2;
+  double missing = safety * (after - trials);
+  for (const Gain& g : gains) {
+    if (missing <= 0) return;
+    tasks.push_back({index, g.leaf});
+    missing -= g.gain;
   }
 }
 
@@ -106,35 +171,19 @@ Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions&
   const EnclosedField field(f, packed);
   std::vector<SlabProof> slabs = slabs_of(packed);
   check_enclosure(field, slabs);
-  struct Task {
-    std::uint32_t slab, leaf;
-  };
   std::vector<Task> tasks;
   for (std::uint32_t s = 0; s < slabs.size(); ++s) {
     for (std::uint32_t k = 0; k < slabs[s].leaves.size(); ++k) tasks.push_back({s, k});
   }
-  const ProofLimits limits{options.tolerance, 1 + options.loosest, options.boxes_per_leaf};
-  // The error of the first leaf wins, so that the message does not depend on the threads.
-  std::mutex mutex;
-  std::size_t first_bad = tasks.size();
-  std::exception_ptr error;
-  constexpr std::size_t batch = 64;
-  for (std::size_t first = 0; first < tasks.size() && !error; first += batch) {
-    if (host.cancelled()) throw Cancelled();
-    host.progress(float(first) / float(tasks.size()));
-    host.parallel_for(std::min(batch, tasks.size() - first), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = first + begin; t < first + end; ++t) {
-        SlabProof& slab = slabs[tasks[t].slab];
-        try {
-          slab.proofs[tasks[t].leaf] = prove_leaf(field, slab.cosines, slab.leaves[tasks[t].leaf], limits);
-        } catch (...) {
-          const std::lock_guard<std::mutex> lock(mutex);
-          if (t < first_bad) first_bad = t, error = std::current_exception();
-        }
-      }
-    });
+  ProofLimits limits{options.tolerance, 1 + options.loosest, options.boxes_per_leaf};
+  prove(slabs, tasks, field, limits, host, 0, 0.8f);
+  for (int round = 0; round < 2; ++round) {
+    limits = {limits.tolerance / 4, 1 + (limits.loosest - 1) / 4, limits.boxes};
+    tasks.clear();
+    for (std::uint32_t s = 0; s < slabs.size(); ++s)
+      add_loose_leaves(slabs[s], s, options.trials, limits, tasks);
+    prove(slabs, tasks, field, limits, host, 0.8f + 0.1f * float(round), 0.9f + 0.1f * float(round));
   }
-  if (error) std::rethrow_exception(error);
 
   Certification out;
   SamplerData proved = data;

@@ -101,13 +101,11 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
-  const DomainPointT<AffineForm> lifted = lift_point(packed_.domain, wo, at.p);
+  const DomainPointT<AffineForm> lifted = lift_box(packed_.domain, wo, at.p);
   EnclosedPoint out{target_over(lifted.geometry, lifted.projected_area), std::nullopt,
                     albedo_over(c) * at.height};
   if (packed_.domain.half() && !mirror_symmetric_) {
-    ShadingGeometry<AffineForm> g = lifted.geometry;
-    g.wi.y = -g.wi.y, g.wh.y = -g.wh.y;
-    out.mirrored = target_over(g, lifted.projected_area);
+    out.mirrored = target_over(mirrored_in_plane(lifted.geometry), lifted.projected_area);
   }
   return out;
 }

@@ -48,6 +48,12 @@ class EnclosedField {
 
   Elevations elevations(CosineRange cosines) const;
   LeafCell<float> cell_of(const PackedLeaf& leaf) const { return unpack(leaf, packed_.domain.half()); }
+  // Whether the square holds wi about the normal, not half vectors and the like.
+  bool is_of_directions() const {
+    const DomainKind kind = packed_.domain.kind;
+    return kind == DomainKind::projected_disk || kind == DomainKind::equal_area ||
+           kind == DomainKind::stretched;
+  }
   EnclosedPoint over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const;
   // As a sampler computes it.
   PointValue at(const ProofPoint& point, CosineRange cosines, const PackedLeaf& leaf) const;

@@ -114,12 +114,16 @@ class Proof {
     return b.box.hi[axis] - b.box.lo[axis] >= smallest_width[axis];
   }
 
-  // So wide that what halving brings tells nothing yet.
-  bool is_far(const OpenBox& b) const {
-    const double most = b.point.mirrored ? std::max(b.point.target.range.hi, b.point.mirrored->range.hi)
-                                         : b.point.target.range.hi;
-    return !(most < 2 * proved_bound() * b.point.unit.range.lo);
+  // The logarithm of how far the ranges are from being proved.
+  double excess(const EnclosedPoint& p) const {
+    constexpr double most = 400;
+    const double top = p.mirrored ? std::max(p.target.range.hi, p.mirrored->range.hi) : p.target.range.hi;
+    const double ratio = top / (proved_bound() * p.unit.range.lo);
+    if (top <= 0 || ratio <= 1 || holds(p)) return 0;
+    return ratio < infinity ? std::min(std::log(ratio), most) : most;
   }
+  // So wide that the difference tells nothing yet.
+  bool is_far(const OpenBox& b) const { return excess(b.point) > 0.7; }
   // Sides as the maps see them: towards grazing everything goes by the ratio of cosines, and near the rim and
   // where the azimuth is a right angle there are layers as thin as the cosine of wo; the pole is a point.
   std::size_t longest_axis(const OpenBox& b) const {
@@ -131,11 +135,13 @@ class Proof {
     const auto layer = [c1](double near, double far) { return std::log((far + c1) / (near + c1)); };
     const double x0 = place(1, b.box.lo[1]), x1 = place(1, b.box.hi[1]);
     const double y0 = place(2, b.box.lo[2]), y1 = place(2, b.box.hi[2]);
-    const double near_x = x0 * x1 <= 0 ? 0 : std::min(std::abs(x0), std::abs(x1));
+    // Of directions about the normal the layer is at x = -1, where wi is about to cancel wo.
+    const bool of_directions = field_.is_of_directions();
+    const double near_x = of_directions ? 1 + x0 : x0 * x1 <= 0 ? 0 : std::min(std::abs(x0), std::abs(x1));
+    const double far_x = of_directions ? 1 + x1 : std::max(std::abs(x0), std::abs(x1));
     const double inner = std::min(y0, y1), outer = std::max(y0, y1);
     const double side[ProofBox::axes] = {
-        std::log(c0 / c1) + b.box.hi[0] - b.box.lo[0],
-        std::max(1.5 * (x1 - x0), 0.5 * layer(near_x, std::max(std::abs(x0), std::abs(x1)))),
+        std::log(c0 / c1) + b.box.hi[0] - b.box.lo[0], std::max(1.5 * (x1 - x0), 0.5 * layer(near_x, far_x)),
         std::max(0.5 * layer(1 - outer, 1 - inner), std::log(outer / std::max(inner, outer / 8)))};
     std::size_t axis = 0;
     for (std::size_t i = 1; i < ProofBox::axes; ++i) {
@@ -160,6 +166,15 @@ class Proof {
     if (is_far(b)) {
       axis = longest_axis(b);
       chosen = halves(b, axis);
+      const auto left = [this](const std::array<OpenBox, 2>& two) {
+        return excess(two[0].point) + excess(two[1].point);
+      };
+      double least = left(chosen);
+      for (std::size_t i = 0, longest = axis; i < ProofBox::axes; ++i) {
+        if (i == longest || !may_halve(b, i)) continue;
+        const std::array<OpenBox, 2> tried = halves(b, i);
+        if (left(tried) < 0.95 * least) least = left(tried), axis = i, chosen = tried;
+      }
       for (OpenBox& half : chosen) half.age = 0;
     } else if (b.age > 0 && b.age <= trusted) {
       chosen = halves(b, axis);

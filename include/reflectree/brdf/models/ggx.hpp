@@ -7,11 +7,17 @@
 
 namespace reflectree {
 
+// sin^2 + alpha^2 cos^2 of the elevation of w.
+template <class T>
+T stretched_sin2_theta(Vec3<T> w, T alpha) {
+  return sin2_theta(w) + sqr(alpha * w.z);
+}
+
 // Trowbridge-Reitz (GGX) distribution per solid angle of the half vector; Walter et al. 2007, eq. 33,
 // written with sin^2 theta_h so that it stays precise at the peak of the sharpest lobes.
 template <class T>
 T ggx_distribution(Vec3<T> wh, T alpha) {
-  const T s = sin2_theta(wh) + sqr(alpha * wh.z);
+  const T s = stretched_sin2_theta(wh, alpha);
   return sqr(alpha) / (pi_v<T> * s * s);
 }
 

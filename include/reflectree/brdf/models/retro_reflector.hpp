@@ -6,6 +6,12 @@
 
 namespace reflectree {
 
+// The geometry of wo and of wi mirrored about the normal.
+template <class T>
+ShadingGeometry<T> back_geometry(const ShadingGeometry<T>& g) {
+  return shading_geometry(g.wo, mirror_direction(g.wi));
+}
+
 // GGX with wi mirrored about the normal: the peak lies at wi = wo ("back vector"). Mirroring preserves
 // measure and cosine, so the albedo is that of Ggx. Belcour et al. 2014.
 struct RetroReflector {
@@ -15,7 +21,7 @@ struct RetroReflector {
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
-    return Ggx{alpha, f0, phi}(shading_geometry(g.wo, mirror_direction(g.wi)));
+    return Ggx{alpha, f0, phi}(back_geometry(g));
   }
 
   BrdfTraits traits() const { return model_traits(*this, alpha.round()); }

@@ -3,10 +3,23 @@
 // the maps say, with room for what the maps round. u: half an ulp of float, 2^-24.
 #pragma once
 
-#include "reflectree/math/affine_form.hpp"
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 
 namespace reflectree {
+
+// The polynomials of fast_functions.hpp are 5e-8 off and round by less than 3e-7; that of the sine has the
+// argument as a factor, so that both are relative. On either side of x = 0 sine and cosine take their place.
+inline Vec2<AffineForm> cos_sin_half(const AffineForm& x) {
+  if (x.range.lo < 0 && x.range.hi > 0) return cos_sin_half<AffineForm>(x);
+  const auto sine_of = [](AffineForm share) {  // of a right angle
+    share.range = intersection(share.range, {0, 1});
+    return sin(AffineForm(0.5 * pi_v<double>) * share);
+  };
+  constexpr double off = 4e-7;
+  const AffineForm a = abs(x), sine = widened(sine_of(a), off);
+  return {sine_of(AffineForm(1) - a) + AffineForm::anything_in({-off, off}), x.range.hi > 0 ? sine : -sine};
+}
 
 // The maps use p and c as their ratio alone, d = p / (p + (c - p) y), and what that rounds is relative to p. So
 // p = 1 and c = c / p, which has two roundings more than l.
@@ -36,7 +49,49 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const AffineForm& z,
   if (!(off < 1) || !(lost < 1)) return plain;
   const AffineForm to_rim = d * (AffineForm(1) - y) + AffineForm::anything_in({-off, off});
   const AffineForm beyond = AffineForm(1) + y * d * (star.p / star.c);
-  return narrower(plain, z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost}));
+  AffineForm out =
+      narrower(plain, z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost}));
+  out.range.hi = std::min(out.range.hi, 1 + 4 * length_tolerance);
+  return out;
+}
+
+// A direction that a domain returns is of unit length, and so is a half vector: what large boxes know of them.
+inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point) {
+  constexpr double most = 1 + 4 * length_tolerance;
+  ShadingGeometry<AffineForm>& g = point.geometry;
+  for (AffineForm* v :
+       {&g.wi.x, &g.wi.y, &g.wi.z, &g.wh.x, &g.wh.y, &g.wh.z, &g.cos_theta_i, &g.cos_theta_h, &g.cos_theta_d})
+    v->range = intersection(v->range, {-most, most});
+  return point;
+}
+
+// lift_point over a box. The map of back vectors is that of half vectors for wo mirrored about the normal, and so
+// it knows b, the half vector of wo and of the mirrored wi, which the float formula takes from their sum. With p
+// as the exact sum, that one errs by 22 u |p|, by u along x, and by 1e-7 along z where wi.z is kept from 0. Where
+// the two may point apart, what it has along their difference m is taken out: of u along x only
+// u |(m.y, m.z)| / |m| < u |p| stays. With the roundings of this step and of the norm: less than 64 u of itself
+// and 8 u along x and y.
+inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<AffineForm>& wo,
+                                         const Vec2<AffineForm>& p) {
+  if (domain.kind != DomainKind::back_vector) return with_unit_vectors(detail::lift_point(domain, wo, p));
+  Domain of_halves = domain;
+  of_halves.kind = DomainKind::half_vector;
+  const DomainPointT<AffineForm> turned =
+      with_unit_vectors(detail::lift_point(of_halves, mirror_direction(wo), p));
+  const ShadingGeometry<AffineForm>& t = turned.geometry;
+  DomainPointT<AffineForm> out{shading_geometry(wo, t.wi), turned.projected_area};
+  constexpr double u = 0x1p-24;
+  const double kept = t.wi.z.range.lo > 1.01e-7 ? 0 : 1.01e-7 / (wo.z + t.wi.z).range.lo;
+  if (!(kept < 0.1)) return out;
+  const auto beside = [&](const AffineForm& v) {
+    return widened(v, 64 * u) + AffineForm::anything_in({-8 * u - kept, 8 * u + kept});
+  };
+  BackVector back{{beside(-t.wh.x), beside(-t.wh.y), widened(t.wh.z, 64 * u + kept)},
+                  widened(t.cos_theta_d, 64 * u + kept)};
+  for (AffineForm* v : {&back.wh.x, &back.wh.y, &back.wh.z})
+    v->range = intersection(v->range, {-1 - 8 * u, 1 + 8 * u});
+  out.geometry.back = back;
+  return out;
 }
 
 }  // namespace reflectree
