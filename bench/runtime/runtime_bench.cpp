@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The runtime of one file beside the C++ samplers: nanoseconds of this thread per call, medians of repeats that
-// alternate in one run, and their ratios. Both sides draw the same directions from the same words, evaluate the
-// same function from directions, and must agree in the sum of all that they return.
+// alternate in one run, and their ratio. Both sides draw the same directions from the same words, evaluate the
+// same function from directions, and must agree in the sum of all that they return. The last column: the C++
+// samplers of the model itself, which are given the half vector and the frame of the viewer.
 //
 //   bench_runtime [CALLS] [REPEATS] [WORD OF A NAME] [cpp|c]     e.g. for a profiler: 1000000 1 exact c
 #include <array>
@@ -29,13 +30,14 @@ struct Subject {
   std::string name;
   Function f;
   Sampler<Function> ours;
+  Sampler<Ggx> native;
   rfl_sampler theirs{};
   std::vector<Direction> wo, wi;  // wi: drawn for its wo
 
   Subject(std::string called, Ggx ggx)
       : Subject(std::move(called), ggx, build(AnyBrdf(ggx), BuildOptions{})) {}
   Subject(std::string called, Ggx ggx, const SamplerData& data)
-      : name(std::move(called)), f{ggx}, ours(make_sampler(f, data)) {
+      : name(std::move(called)), f{ggx}, ours(make_sampler(f, data)), native(make_sampler(ggx, data)) {
     const Bytes bytes = encode_sampler(data);
     if (const char* error = rfl_load_bytes(&theirs, bytes.data(), bytes.size())) {
       std::fprintf(stderr, "%s: %s\n", name.c_str(), error);
@@ -76,79 +78,93 @@ struct FourWords {
 
 // What is measured: one call of either side, for pair i of the pool.
 using Call = float (*)(const Subject&, std::size_t i, Pcg32&);
+
+template <auto Member>
+float alias(const Subject& s, std::size_t i, Pcg32& u) {
+  return sum_of((s.*Member).one_shot.sample(s.wo[i], u));
+}
+template <auto Member>
+float alias_without_f(const Subject& s, std::size_t i, Pcg32& u) {
+  const auto p = (s.*Member).one_shot.propose(s.wo[i], u);
+  return p ? p->wi.x + p->wi.y + p->wi.z + p->pdf + p->scale : 0.f;
+}
+template <auto Member>
+float uniforms(const Subject& s, std::size_t i, Pcg32& u) {
+  const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
+  return sum_of((s.*Member).one_shot.sample(s.wo[i], u1, u2));
+}
+template <auto Member>
+float pdf(const Subject& s, std::size_t i, Pcg32&) {
+  return (s.*Member).one_shot.pdf(s.wo[i], s.wi[i]);
+}
+template <auto Member>
+float inverse(const Subject& s, std::size_t i, Pcg32&) {
+  const auto at = (s.*Member).one_shot.invert(s.wo[i], s.wi[i]);
+  return at ? float(at->x) + float(at->y) : 0.f;
+}
+template <auto Member>
+float exact(const Subject& s, std::size_t i, Pcg32& u) {
+  return sum_of((s.*Member).exact.sample(s.wo[i], u));
+}
+
+float c_alias(const Subject& s, std::size_t i, Pcg32& u) {
+  rfl_viewer v;
+  rfl_draw d;
+  if (!rfl_view(&s.theirs, vec(s.wo[i]), &v)) return 0;
+  rfl_one_shot(&s.theirs, &v, FourWords(u).words, &d);
+  return sum_of(d, value(s, s.wo[i], d.wi));
+}
+float c_alias_without_f(const Subject& s, std::size_t i, Pcg32& u) {
+  rfl_viewer v;
+  rfl_draw d;
+  if (!rfl_view(&s.theirs, vec(s.wo[i]), &v)) return 0;
+  rfl_one_shot(&s.theirs, &v, FourWords(u).words, &d);
+  return d.wi.x + d.wi.y + d.wi.z + d.pdf + d.scale;
+}
+float c_uniforms(const Subject& s, std::size_t i, Pcg32& u) {
+  const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
+  rfl_viewer v;
+  rfl_draw d;
+  if (!rfl_view(&s.theirs, vec(s.wo[i]), &v) || !rfl_one_shot_uniforms(&s.theirs, &v, u1, u2, &d)) return 0;
+  return sum_of(d, value(s, s.wo[i], d.wi));
+}
+float c_pdf(const Subject& s, std::size_t i, Pcg32&) {
+  rfl_viewer v;
+  return rfl_view(&s.theirs, vec(s.wo[i]), &v) ? rfl_one_shot_pdf(&s.theirs, &v, vec(s.wi[i])) : 0;
+}
+float c_inverse(const Subject& s, std::size_t i, Pcg32&) {
+  rfl_viewer v;
+  double at[2] = {0, 0};
+  if (rfl_view(&s.theirs, vec(s.wo[i]), &v)) rfl_one_shot_invert(&s.theirs, &v, vec(s.wi[i]), at);
+  return float(at[0]) + float(at[1]);
+}
+float c_exact(const Subject& s, std::size_t i, Pcg32& u) {
+  rfl_viewer v;
+  rfl_draw d;
+  if (!rfl_view(&s.theirs, vec(s.wo[i]), &v)) return 0;
+  for (int trial = 0; trial < RFL_MAX_TRIALS; ++trial) {
+    rfl_candidate c;
+    rfl_propose(&s.theirs, &v, FourWords(u).words, &c);
+    const Rgb f = value(s, s.wo[i], c.wi);
+    const float channels[3] = {f.r, f.g, f.b};
+    if (rfl_accept(&v, &c, rfl_target(&s.theirs, channels, 3), u(), &d)) return sum_of(d, f);
+  }
+  return 0;
+}
+
 struct Way {
   const char* name;
-  Call cpp, c;
+  Call cpp, native, c;
 };
-
+constexpr auto ours = &Subject::ours;
+constexpr auto native = &Subject::native;
 const Way ways[] = {
-    {"one-shot, alias",
-     [](const Subject& s, std::size_t i, Pcg32& u) { return sum_of(s.ours.one_shot.sample(s.wo[i], u)); },
-     [](const Subject& s, std::size_t i, Pcg32& u) {
-       rfl_viewer v;
-       if (!rfl_view(&s.theirs, vec(s.wo[i]), &v)) return 0.f;
-       rfl_draw d;
-       rfl_one_shot(&s.theirs, &v, FourWords(u).words, &d);
-       return sum_of(d, value(s, s.wo[i], d.wi));
-     }},
-    {"one-shot, alias, without f",
-     [](const Subject& s, std::size_t i, Pcg32& u) {
-       const auto p = s.ours.one_shot.propose(s.wo[i], u);
-       return p ? p->wi.x + p->wi.y + p->wi.z + p->pdf + p->scale : 0.f;
-     },
-     [](const Subject& s, std::size_t i, Pcg32& u) {
-       rfl_viewer v;
-       if (!rfl_view(&s.theirs, vec(s.wo[i]), &v)) return 0.f;
-       rfl_draw d;
-       rfl_one_shot(&s.theirs, &v, FourWords(u).words, &d);
-       return d.wi.x + d.wi.y + d.wi.z + d.pdf + d.scale;
-     }},
-    {"one-shot, uniforms",
-     [](const Subject& s, std::size_t i, Pcg32& u) {
-       const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
-       return sum_of(s.ours.one_shot.sample(s.wo[i], u1, u2));
-     },
-     [](const Subject& s, std::size_t i, Pcg32& u) {
-       const double u1 = to_unit_double(u()), u2 = to_unit_double(u());
-       rfl_viewer v;
-       rfl_draw d;
-       if (!rfl_view(&s.theirs, vec(s.wo[i]), &v) || !rfl_one_shot_uniforms(&s.theirs, &v, u1, u2, &d))
-         return 0.f;
-       return sum_of(d, value(s, s.wo[i], d.wi));
-     }},
-    {"one-shot, pdf",
-     [](const Subject& s, std::size_t i, Pcg32&) { return s.ours.one_shot.pdf(s.wo[i], s.wi[i]); },
-     [](const Subject& s, std::size_t i, Pcg32&) {
-       rfl_viewer v;
-       return rfl_view(&s.theirs, vec(s.wo[i]), &v) ? rfl_one_shot_pdf(&s.theirs, &v, vec(s.wi[i])) : 0.f;
-     }},
-    {"one-shot, inverse",
-     [](const Subject& s, std::size_t i, Pcg32&) {
-       const auto at = s.ours.one_shot.invert(s.wo[i], s.wi[i]);
-       return at ? float(at->x) + float(at->y) : 0.f;
-     },
-     [](const Subject& s, std::size_t i, Pcg32&) {
-       rfl_viewer v;
-       double at[2] = {0, 0};
-       if (rfl_view(&s.theirs, vec(s.wo[i]), &v)) rfl_one_shot_invert(&s.theirs, &v, vec(s.wi[i]), at);
-       return float(at[0]) + float(at[1]);
-     }},
-    {"exact",
-     [](const Subject& s, std::size_t i, Pcg32& u) { return sum_of(s.ours.exact.sample(s.wo[i], u)); },
-     [](const Subject& s, std::size_t i, Pcg32& u) {
-       rfl_viewer v;
-       if (!rfl_view(&s.theirs, vec(s.wo[i]), &v)) return 0.f;
-       for (int trial = 0; trial < RFL_MAX_TRIALS; ++trial) {
-         rfl_candidate c;
-         rfl_propose(&s.theirs, &v, FourWords(u).words, &c);
-         const Rgb f = value(s, s.wo[i], c.wi);
-         const float channels[3] = {f.r, f.g, f.b};
-         rfl_draw d;
-         if (rfl_accept(&v, &c, rfl_target(&s.theirs, channels, 3), u(), &d)) return sum_of(d, f);
-       }
-       return 0.f;
-     }},
-};
+    {"one-shot, alias", alias<ours>, alias<native>, c_alias},
+    {"one-shot, alias, without f", alias_without_f<ours>, alias_without_f<native>, c_alias_without_f},
+    {"one-shot, uniforms", uniforms<ours>, uniforms<native>, c_uniforms},
+    {"one-shot, pdf", pdf<ours>, pdf<native>, c_pdf},
+    {"one-shot, inverse", inverse<ours>, inverse<native>, c_inverse},
+    {"exact", exact<ours>, exact<native>, c_exact}};
 
 struct Run {
   double ns, sum;
@@ -173,24 +189,25 @@ int main(int argc, char** argv) {
   const std::string wanted = argc > 3 ? argv[3] : "", side = argc > 4 ? argv[4] : "";
   if (calls < 1 || repeats < 1)
     return std::fputs("usage: bench_runtime [CALLS] [REPEATS] [NAME] [cpp|c]\n", stderr), 2;
-  const Subject subjects[] = {{"ggx:alpha=0.3", Ggx{0.3f}}, {"ggx:alpha=0.1", Ggx{0.1f}}};
-  std::printf("%ld calls, %ld repeats\n%-20s %-28s %8s %8s %7s\n", calls, repeats, "material", "", "C++ ns",
-              "C ns", "ratio");
+  const Subject subjects[] = {
+      {"ggx 0.3", Ggx{0.3f}}, {"ggx 0.1", Ggx{0.1f}}, {"ggx 0.05 x 0.3", Ggx{Widths(0.05f, 0.3f)}}};
+  std::printf("%ld calls, %ld repeats\n%-16s %-28s %8s %8s %7s %9s\n", calls, repeats, "", "", "C++ ns",
+              "C ns", "ratio", "model ns");
   bool agree = true;
   for (const Subject& s : subjects) {
     for (const Way& way : ways) {
-      const std::string name = s.name + " " + way.name;
-      if (name.find(wanted) == std::string::npos) continue;
-      std::vector<double> cpp, c, ratio;
+      if ((s.name + " " + way.name).find(wanted) == std::string::npos) continue;
+      std::vector<double> cpp, c, ratio, model;
       for (long r = 0; r < repeats; ++r) {
-        Run ours{0, 0}, theirs{0, 0};
-        if (side != "c") ours = run(s, way.cpp, calls);
+        Run ours_ran{0, 0}, theirs{0, 0};
+        if (side != "c") ours_ran = run(s, way.cpp, calls);
         if (side != "cpp") theirs = run(s, way.c, calls);
-        cpp.push_back(ours.ns), c.push_back(theirs.ns), ratio.push_back(theirs.ns / ours.ns);
-        agree = agree && (!side.empty() || ours.sum == theirs.sum);
+        if (side.empty()) model.push_back(run(s, way.native, calls).ns);
+        cpp.push_back(ours_ran.ns), c.push_back(theirs.ns), ratio.push_back(theirs.ns / ours_ran.ns);
+        agree = agree && (!side.empty() || ours_ran.sum == theirs.sum);
       }
-      std::printf("%-20s %-28s %8.1f %8.1f %7.2f\n", s.name.c_str(), way.name, median(cpp), median(c),
-                  median(ratio));
+      std::printf("%-16s %-28s %8.1f %8.1f %7.2f %9.1f\n", s.name.c_str(), way.name, median(cpp), median(c),
+                  median(ratio), model.empty() ? 0 : median(model));
     }
   }
   if (!agree) return std::fputs("the two sides do not return the same\n", stderr), 1;
