@@ -15,9 +15,11 @@
 const int RFL_MAX_TRIALS = 256;
 const int RFL_ALBEDO = 9, RFL_EXACT = 13, RFL_ONE_SHOT = 17;
 const float RFL_PI = 3.14159274, RFL_LEAST = 1e-7, RFL_MIN_COS = 7.62939453125e-06;
-// Domains: 0 projected_disk, 1 equal_area, 2 half_vector, 3 back_vector, 4 stretched, 5 mirror_vector, 6 normal_vector.
+const int RFL_PROJECTED_DISK = 0, RFL_EQUAL_AREA = 1, RFL_HALF_VECTOR = 2, RFL_BACK_VECTOR = 3, RFL_STRETCHED = 4,
+  RFL_MIRROR_VECTOR = 5, RFL_NORMAL_VECTOR = 6, RFL_SLOPE_STAR = 7;
+const uint RFL_ISOTROPIC = 0u, RFL_TWO_PLANES = 1u, RFL_ONE_PLANE = 2u, RFL_HALF_TURN = 3u;
 
-struct RflViewer { vec3 known, wo; float cos_phi, sin_phi, albedo; };
+struct RflViewer { vec3 known, axis; float cos_phi, sin_phi, side, phi, albedo; };
 struct RflDraw { vec3 wi; float pdf, scale; };
 struct RflCandidate { vec3 wi; float cos_i, area, majorant; };
 struct RflPoint { vec3 wi; float area; };
@@ -25,6 +27,7 @@ struct RflPoint { vec3 wi; float area; };
 float rfl_float(int i) { return uintBitsToFloat(RFL_WORD(i)); }
 int rfl_kind() { return int(RFL_WORD(3)); }
 bool rfl_half() { return RFL_WORD(4) != 0u; }
+float rfl_shape() { return rfl_float(5); }
 // Where the sign bit of s is clear a, else b; also for zeros.
 float rfl_by_sign(float s, float a, float b) { return (floatBitsToUint(s) >> 31) == 0u ? a : b; }
 
@@ -37,71 +40,114 @@ int rfl_find(int head, float c) {
   while (rfl_float(borders + i + 1) <= c) ++i;
   return i;
 }
-// false is "no sample": wo at or below the horizon, not of unit length, or albedo 0.
+// Linear in the cosine; over the azimuth the cubic through four rows.
+float rfl_albedo(float c, float phi) {
+  int p = int(RFL_WORD(RFL_ALBEDO + 3)) + 2 * rfl_find(RFL_ALBEDO, c);
+  if (RFL_WORD(21) == RFL_ISOTROPIC) return rfl_float(p) + rfl_float(p + 1) * c;
+  int g = int(RFL_WORD(23)), pieces = int(RFL_WORD(24));
+  while (rfl_float(g + 4) <= phi) g += 4;
+  float x = max((phi - rfl_float(g)) * rfl_float(g + 1), 0.0);
+  int k = min(int(x), int(RFL_WORD(g + 3)));
+  float t = x - float(k), a = t + 1.0, b = t - 1.0, d = t - 2.0, sum = 0.0;
+  vec4 weights = vec4(-t * b * d / 6.0, a * b * d / 2.0, -a * t * d / 2.0, a * t * b / 6.0);
+  p += 2 * (int(RFL_WORD(g + 2)) + k) * pieces;
+  for (int i = 0; i < 4; ++i, p += 2 * pieces) sum += weights[i] * (rfl_float(p) + rfl_float(p + 1) * c);
+  return max(sum, 0.0);
+}
+// false is "no sample": wo at or below the horizon, not of unit length, or albedo 0. Symmetries fold wo.
 bool rfl_view(vec3 wo, out RflViewer v) {
   float sine = sqrt(wo.x * wo.x + wo.y * wo.y), inverse = sine > 0.0 ? 1.0 / sine : 0.0, c = min(wo.z, 1.0);
-  v = RflViewer(wo, vec3(sine, 0.0, c), sine > 0.0 ? wo.x * inverse : 1.0, wo.y * inverse, 0.0);
+  vec2 turn = vec2(rfl_float(25), rfl_float(26)), inner = vec2(1.0, 0.0);
+  vec2 w = vec2(wo.x * turn.x + wo.y * turn.y, wo.y * turn.x - wo.x * turn.y);
+  uint symmetry = RFL_WORD(21);
+  v = RflViewer(wo, vec3(0.0), 0.0, 0.0, 1.0, 0.0, 0.0);
   if (!(wo.z >= RFL_MIN_COS && abs(dot(wo, wo) - 1.0) <= 1e-3)) return false;
-  int piece = int(RFL_WORD(RFL_ALBEDO + 3)) + 2 * rfl_find(RFL_ALBEDO, c);
-  v.albedo = rfl_float(piece) + rfl_float(piece + 1) * c;
+  if (symmetry != RFL_ISOTROPIC) {
+    if ((symmetry == RFL_TWO_PLANES && w.x < 0.0) || (symmetry == RFL_HALF_TURN && w.y < 0.0)) {
+      w = -w;
+      turn = -turn;
+    }
+    if (symmetry <= RFL_ONE_PLANE && w.y < 0.0) {
+      w.y = -w.y;
+      v.side = -1.0;
+    }
+    v.phi = sine > 0.0 ? atan(w.y, w.x) : 0.0;
+    if (v.phi < 0.0) v.phi += 2.0 * RFL_PI;
+  }
+  v.axis = vec3(w, c);
+  if (RFL_WORD(22) != 0u) {
+    inner = vec2(sine > 0.0 ? w.x * inverse : 1.0, v.side * (w.y * inverse));
+    v.axis = vec3(sine, 0.0, c);
+  }
+  if (rfl_kind() == RFL_BACK_VECTOR) v.axis.x = -sine;
+  if (rfl_kind() == RFL_NORMAL_VECTOR) v.axis = vec3(0.0, 0.0, 1.0);
+  v.cos_phi = turn.x * inner.x - turn.y * inner.y;
+  v.sin_phi = turn.y * inner.x + turn.x * inner.y;
+  v.albedo = rfl_albedo(c, v.phi);
   return v.albedo > 0.0;
 }
-int rfl_slab_at(int head, RflViewer v) { return int(RFL_WORD(head + 3)) + 5 * rfl_find(head, v.wo.z); }
+int rfl_slab_at(int head, RflViewer v) {
+  float c = min(v.known.z, 1.0);
+  int table = int(RFL_WORD(head + 3)), at = int(RFL_WORD(head + 2));
+  if (RFL_WORD(head) != 0u) return table + 5 * rfl_find(head, c);
+  while (at < table)  // a tree over -cos theta_o and phi_o
+    at = int(RFL_WORD((RFL_WORD(at + 3) == 0u ? -c : v.phi) >= rfl_float(at) ? at + 2 : at + 1));
+  return at;
+}
 vec3 rfl_outward(RflViewer v, vec3 w) {
-  return vec3(w.x * v.cos_phi - w.y * v.sin_phi, w.x * v.sin_phi + w.y * v.cos_phi, w.z);
+  float y = v.side * w.y;
+  return vec3(w.x * v.cos_phi - y * v.sin_phi, w.x * v.sin_phi + y * v.cos_phi, w.z);
 }
 vec3 rfl_inward(RflViewer v, vec3 w) {
-  return vec3(w.x * v.cos_phi + w.y * v.sin_phi, w.y * v.cos_phi - w.x * v.sin_phi, w.z);
+  return vec3(w.x * v.cos_phi + w.y * v.sin_phi, v.side * (w.y * v.cos_phi - w.x * v.sin_phi), w.z);
 }
 
 // ---- The domain ----
 
-// p and c of half_vector and back_vector; p, c and z R of mirror_vector and normal_vector.
-vec2 rfl_star(float sin_o, float cos_o, float cos_phi) {
-  float sx = sin_o * cos_phi, l = sqrt(cos_o * cos_o + sx * sx) + abs(sx);
-  return vec2(rfl_by_sign(sx, l * l, cos_o * cos_o), cos_o * l);
+// Along the azimuth u the radius t = y d ends at the rim p / c, with d = p / (p + (c - p) y): p, c and z p / c.
+vec3 rfl_rim(vec3 a, vec2 u) {
+  int kind = rfl_kind();
+  vec2 s = kind == RFL_SLOPE_STAR ? vec2(rfl_shape() * u.x, u.y / rfl_shape()) : vec2(u.x, 0.0);
+  float q = kind == RFL_SLOPE_STAR ? dot(s, s) : 1.0, b = dot(s, a.xy), z2 = a.z * a.z;
+  float l = sqrt(b * b + q * z2) + abs(b);
+  if (kind == RFL_SLOPE_STAR) return vec3(rfl_by_sign(b, l, a.z), rfl_by_sign(b, q * a.z, l), 0.0);
+  if (kind == RFL_HALF_VECTOR || kind == RFL_BACK_VECTOR) return vec3(rfl_by_sign(b, l * l, z2), a.z * l, 0.0);
+  return vec3(rfl_by_sign(b, a.z, l), rfl_by_sign(b, l, a.z), rfl_by_sign(b, z2 / l, l));
 }
-vec3 rfl_rim(float sin_o, float cos_o, float cos_phi) {
-  float sx = sin_o * cos_phi, l = sqrt(cos_o * cos_o + sx * sx) + abs(sx);
-  return vec3(rfl_by_sign(sx, cos_o, l), rfl_by_sign(sx, l, cos_o), rfl_by_sign(sx, cos_o * cos_o / l, l));
-}
-RflPoint rfl_lift(vec3 wo, vec2 p) {
+RflPoint rfl_lift(vec3 a, vec2 p) {
   float r = abs(p.y), y = max(r, 1e-12), z, h = 0.5 * p.x, q = h * h, q2 = q * q;
   float ux = h * ((3.14159264 - q * 5.16771009) + q2 * ((2.55007766 - q * 0.598292159) + q2 * 0.0776594082));
   float uy = (1.0 - q * 4.93480214) + q2 * ((4.05870916 - q * 1.33521206) + q2 * (0.234937559 - q * 0.0243967166));
-  uy = rfl_by_sign(p.y, uy, -uy);
+  vec2 u = vec2(ux, rfl_by_sign(p.y, uy, -uy));
   int kind = rfl_kind();
-  if (kind == 2 || kind == 3) {
-    float ax = kind == 2 ? wo.x : -wo.x;
-    vec2 s = rfl_star(ax, wo.z, ux);
-    float d = s.x / (s.x + (s.y - s.x) * y), t = y * d, won = max(ax * ux * t + wo.z, RFL_LEAST);
-    float cos2 = 1.0 / (1.0 + t * t), twice = 2.0 * won * cos2;
-    vec3 wi = vec3(twice * t * ux - ax, twice * t * uy, max(twice - wo.z, RFL_LEAST));
-    return RflPoint(wi, wi.z * (8.0 * RFL_PI) * won * (cos2 * cos2) * (t * d * d));
-  }
-  if (kind >= 5) {
-    vec2 a = kind == 5 ? wo.xz : vec2(0.0, 1.0);
-    vec3 s = rfl_rim(a.x, a.y, ux);
-    float d = s.x / (s.x + (s.y - s.x) * y), t = y * d, tt = t * t, inverse = 1.0 / (1.0 + tt);
-    z = max(d * (1.0 - y) * (s.z * t + a.y) * inverse, RFL_LEAST);
-    vec3 wi = vec3(-(a.x * (1.0 - tt) + 2.0 * t * a.y * ux) * inverse, 2.0 * t * uy * inverse, z);
-    return RflPoint(wi, z * (8.0 * RFL_PI) * t * (inverse * inverse) * (d * d));
-  }
   float area = RFL_PI;
-  if (kind == 0) {
+  if (kind == RFL_PROJECTED_DISK) {
     z = max(sqrt(1.0 - r), RFL_LEAST);
     r = sqrt(r);
-  } else if (kind == 1) {
+  } else if (kind == RFL_EQUAL_AREA) {
     z = max(1.0 - r, RFL_LEAST);
     r = sqrt(r * (2.0 - r));
     area = 2.0 * RFL_PI * z;
-  } else {
-    float power = 1.0 / (2.0 - rfl_float(5)), v = max(1.0 - r, 1e-7);
+  } else if (kind == RFL_STRETCHED) {
+    float power = 1.0 / (2.0 - rfl_shape()), v = max(1.0 - r, 1e-7);
     z = max(pow(v, power), RFL_LEAST);
     r = sqrt(1.0 - z * z);
     area = 2.0 * RFL_PI * power * z * z / v;
+  } else {
+    vec3 s = rfl_rim(a, u);
+    float d = s.x / (s.x + (s.y - s.x) * y), t = y * d;
+    if (kind == RFL_MIRROR_VECTOR || kind == RFL_NORMAL_VECTOR) {
+      float tt = t * t, inverse = 1.0 / (1.0 + tt);
+      z = max(d * (1.0 - y) * (s.z * t + a.z) * inverse, RFL_LEAST);
+      vec3 wi = vec3(-(a.x * (1.0 - tt) + 2.0 * t * a.z * u.x) * inverse, 2.0 * t * u.y * inverse, z);
+      return RflPoint(wi, z * (8.0 * RFL_PI) * t * (inverse * inverse) * (d * d));
+    }
+    vec2 n = t * (kind == RFL_SLOPE_STAR ? vec2(rfl_shape() * u.x, u.y / rfl_shape()) : u);  // wh is along (n, 1)
+    float won = max(dot(a.xy, n) + a.z, RFL_LEAST), cos2 = 1.0 / (1.0 + dot(n, n)), twice = 2.0 * won * cos2;
+    vec3 wi = vec3(twice * n - a.xy, max(twice - a.z, RFL_LEAST));
+    return RflPoint(wi, wi.z * (8.0 * RFL_PI) * won * (cos2 * cos2) * (t * d * d));
   }
-  return RflPoint(vec3(r * ux, r * uy, z), area);
+  return RflPoint(vec3(r * u, z), area);
 }
 float rfl_quarter_atan(float t) {
   float s = t * t, p = (-0.00597563674 * s + 0.0308790214) * s - 0.0757402948;
@@ -109,31 +155,37 @@ float rfl_quarter_atan(float t) {
   return t * ((p - 0.424396087) * s + 1.27323942);
 }
 // The inverse of rfl_lift.
-vec2 rfl_lower(vec3 wo, vec3 wi) {
+vec2 rfl_lower(vec3 a, vec3 wi) {
   int kind = rfl_kind();
-  float sin2 = wi.x * wi.x + wi.y * wi.y, y = kind == 1 ? sin2 / (1.0 + wi.z) : sin2;
+  bool slopes = kind == RFL_SLOPE_STAR;
+  float y = wi.x * wi.x + wi.y * wi.y;
   vec3 w = wi;
-  if (kind == 4) {
-    y = 1.0 - pow(wi.z, 2.0 - rfl_float(5));
-  } else if (kind == 2 || kind == 3) {
-    vec3 o = vec3(kind == 2 ? wo.x : -wo.x, 0.0, wo.z), m = o - wi;
-    w = o + wi;
-    if (dot(o, wi) < 0.0) w -= (dot(w, m) / dot(m, m)) * m;
-    w = normalize(w);
-    float sine = sqrt(max(w.x * w.x + w.y * w.y, RFL_LEAST * RFL_LEAST)), t = sine / max(w.z, 1e-12);
-    vec2 s = rfl_star(o.x, wo.z, w.x / sine);
-    y = s.x * t / (s.x - (s.y - s.x) * t);
-  } else if (kind >= 5) {
-    vec2 a = kind == 5 ? wo.xz : vec2(0.0, 1.0), off = vec2(wi.x + a.x, wi.z - a.y);
-    w = vec3(-a.y * off.x - a.x * off.y, wi.y, a.y * wi.z - a.x * wi.x);
-    float sine = sqrt(max(w.x * w.x + w.y * w.y, RFL_LEAST * RFL_LEAST));
-    float t = w.z > 0.0 ? sine / (1.0 + w.z) : (1.0 - w.z) / sine;
-    vec3 s = rfl_rim(a.x, a.y, w.x / sine);
+  if (kind == RFL_EQUAL_AREA) {
+    y = y / (1.0 + wi.z);
+  } else if (kind == RFL_STRETCHED) {
+    y = 1.0 - pow(wi.z, 2.0 - rfl_shape());
+  } else if (kind != RFL_PROJECTED_DISK) {
+    bool about = kind == RFL_MIRROR_VECTOR || kind == RFL_NORMAL_VECTOR;
+    if (about) {
+      vec2 off = vec2(wi.x + a.x, wi.z - a.z);
+      w = vec3(-a.z * off.x - a.x * off.y, wi.y, a.z * wi.z - a.x * wi.x);
+    } else {
+      vec3 m = a - wi;
+      w = a + wi;
+      if (dot(a, wi) < 0.0) w -= (dot(w, m) / dot(m, m)) * m;
+      w = normalize(w);
+      w.z = max(w.z, 1e-12);
+      if (slopes) w.xy = vec2(w.x / (w.z * rfl_shape()), w.y / w.z * rfl_shape());
+    }
+    float sine = sqrt(max(dot(w.xy, w.xy), RFL_LEAST * RFL_LEAST));
+    float t = slopes ? sine : !about ? sine / w.z : w.z > 0.0 ? sine / (1.0 + w.z) : (1.0 - w.z) / sine;
+    if (slopes && w.x == 0.0 && w.y == 0.0) w.x = sine;
+    vec3 s = rfl_rim(a, w.xy / sine);
     y = s.x * t / (s.x - (s.y - s.x) * t);
   }
   y = clamp(y, 0.0, 1.0);
-  float a = abs(w.x), b = abs(w.y);
-  float x = a > b ? 1.0 - 0.5 * rfl_quarter_atan(b / a) : b > 0.0 ? 0.5 * rfl_quarter_atan(a / b) : 1.0;
+  float b = abs(w.x), c = abs(w.y);
+  float x = b > c ? 1.0 - 0.5 * rfl_quarter_atan(c / b) : c > 0.0 ? 0.5 * rfl_quarter_atan(b / c) : 1.0;
   return vec2(w.x < 0.0 ? -x : x, !rfl_half() && w.y < 0.0 ? -y : y);
 }
 
@@ -180,7 +232,7 @@ RflPoint rfl_place(int head, RflViewer v, uvec4 bits, out float height) {
   vec3 at = rfl_at(leaf, vec2(rfl_mix(rfl_byte(slopes), bits.z, spare),
                               rfl_linear(rfl_slope(slopes >> 8), float(bits.w >> 8) * 5.9604644775390625e-08)));
   height = at.z;
-  return rfl_lift(v.wo, vec2(at.x, rfl_half() && (bits.w & 1u) != 0u ? -at.y : at.y));
+  return rfl_lift(v.axis, vec2(at.x, rfl_half() && (bits.w & 1u) != 0u ? -at.y : at.y));
 }
 
 // ---- One-shot mode ----
@@ -212,7 +264,7 @@ RflDraw rfl_one_shot_uniforms(RflViewer v, vec2 u) {
   }
   uint slopes = RFL_WORD(leaf + 4);
   vec3 at = rfl_at(leaf, vec2(rfl_linear(rfl_slope(slopes), min(u.x, 1.0)), rfl_linear(rfl_slope(slopes >> 8), min(u.y, 1.0))));
-  return rfl_finish(v, rfl_lift(v.wo, vec2(at.x, below ? -at.y : at.y)), at.z);
+  return rfl_finish(v, rfl_lift(v.axis, vec2(at.x, below ? -at.y : at.y)), at.z);
 }
 // Per solid angle; u: the uniforms that lead to wi.
 float rfl_one_shot_invert(RflViewer v, vec3 wi, out vec2 u) {
@@ -224,8 +276,8 @@ float rfl_one_shot_invert(RflViewer v, vec3 wi, out vec2 u) {
   u = vec2(-1.0);
   if (!(wi.z > 0.0)) return 0.0;
   if (rfl_half()) w.y = abs(w.y);
-  vec2 p = rfl_lower(v.wo, w);
-  RflPoint at = rfl_lift(v.wo, p);
+  vec2 p = rfl_lower(v.axis, w);
+  RflPoint at = rfl_lift(v.axis, p);
   while (left > 1u) {
     uint word = RFL_WORD(node + 1), lower_leaves = word & 0x7fffffffu;
     vec2 axis = (word >> 31) != 0u ? vec2(1.0, 0.0) : vec2(0.0, 1.0);

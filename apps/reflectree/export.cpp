@@ -21,7 +21,7 @@ std::vector<std::uint32_t> words_of(const OpenedSampler& subject) {
   const Bytes bytes = encode_sampler(subject.data);
   rfl_sampler s;
   if (const char* error = rfl_load_bytes(&s, bytes.data(), bytes.size())) {
-    throw Error(error, subject.text, "name a sampler or a material of an isotropic function");
+    throw Error(error, subject.text, "name a sampler or a material of one function");
   }
   std::vector<std::uint32_t> words(s.words, s.words + s.words[2]);
   rfl_free(&s);
@@ -98,7 +98,7 @@ void add_export(CLI::App& app, Context& context, Run& run) {
   CLI::App* command = app.add_subcommand(
       "export", "Write a sampler as an array in C, GLSL or WGSL, for runtimes of one file");
   auto o = std::make_shared<ExportOptions>();
-  command->add_option("SAMPLER", o->subject, "A sampler file, or a material (built on the fly); isotropic")
+  command->add_option("SAMPLER", o->subject, "A sampler file, or a material (built on the fly)")
       ->type_name("")
       ->required();
   command->add_option("--c", o->c, "C text, for runtime/reflectree_sample.h")->type_name("FILE");

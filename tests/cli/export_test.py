@@ -11,6 +11,7 @@ from program import ProgramTest
 
 RUNTIME = pathlib.Path(__file__).resolve().parents[2] / "runtime"
 MATERIAL = "plastic:alpha=0.4"
+ANISOTROPIC = ("ggx:alpha_x=0.5,alpha_y=0.6", "--trials", "4", "--variance", "1")
 COMPARE = """
 #include "reflectree_sample.h"
 #include "words.h"
@@ -53,6 +54,12 @@ class Export(ProgramTest):
                         "compare", "-lm"], cwd=self.folder, check=True)
         compare = [str(self.folder / "compare"), str(self.folder / "it.rfl")]
         self.assertEqual(subprocess.run(compare, check=False).returncode, 0)
+        self.run_program("-q", "build", *ANISOTROPIC, "-o", "brushed.rfl")
+        self.run_program("-q", "export", "brushed.rfl", "--c", "words.h", "--name", "mine")
+        subprocess.run([compiler, "-std=c99", f"-I{RUNTIME}", "compare.c", "-o", "brushed", "-lm"], cwd=self.folder,
+                       check=True)
+        self.assertEqual(subprocess.run([str(self.folder / "brushed"), str(self.folder / "brushed.rfl")],
+                                        check=False).returncode, 0)
         # The twin: another sampler is another array.
         self.run_program("-q", "build", "plastic:alpha=0.41", "-o", "it.rfl")
         self.assertEqual(subprocess.run(compare, check=False).returncode, 3)
@@ -60,7 +67,7 @@ class Export(ProgramTest):
     def test_errors(self):
         lambert = "lambert:rho=0.5"
         for arguments, said in (
-                (("ggx:alpha_x=0.5,alpha_y=0.6", "--trials", "4", "--variance", "1", "--c", "no.h"), "anisotropic"),
+                (("ggx:alpha=0.3..0.4", "--c", "no.h"), "family"),
                 ((lambert,), "no language"),
                 ((lambert, "--c", "no.h", "--name", "1x"), "1x"),
                 ((lambert, "--c", "no/no.h"), "no/no.h")):

@@ -112,21 +112,16 @@ Located locate(const DescentNode* node, const PackedLeaf* leaf, std::uint32_t co
     const bool x = node->split_x;
     float &start = x ? x0 : y0, &size = x ? width : height;
     double &lo = x ? lo1 : lo2, &share = x ? size1 : size2;
-    const double lower = double(node->lower);
+    const double lower = share * double(node->lower);  // as the descent from uniforms rounds it
     const std::uint32_t below_count = node->lower_leaves;
     size *= 0.5f;
-    if ((x ? p.x : p.y) < start + size) {
-      share *= lower;
-      leaves = below_count;
-      ++node;
-    } else {
-      start += size;
-      lo += share * lower;
-      share *= 1 - lower;
-      leaves -= below_count;
-      leaf += below_count;
-      node += below_count;
-    }
+    const bool up = (x ? p.x : p.y) >= start + size;
+    start += up ? size : 0;
+    lo += up ? lower : 0;
+    share = up ? share - lower : lower;
+    leaves = up ? leaves - below_count : below_count;
+    leaf += up ? below_count : 0;
+    node += up ? below_count : 1;
   }
   const float gx = float(leaf->slope_x) / 128, gy = float(leaf->slope_y) / 128;
   const float tx = clamp((p.x - x0) / width, 0.f, 1.f), ty = clamp((p.y - y0) / height, 0.f, 1.f);
