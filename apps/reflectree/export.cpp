@@ -4,7 +4,7 @@
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file.hpp"
 #include "reflectree/formats/sampler_file.hpp"
-#include "reflectree_sample.h"
+#include "reflectree_load.h"
 #include "subject.hpp"
 
 namespace reflectree::cli {

@@ -15,7 +15,7 @@
 #include "reflectree/formats/sampler_file.hpp"
 #include "reflectree/sampler/sampler.hpp"
 #include "reflectree/study/thread_time.hpp"
-#include "reflectree_sample.h"
+#include "reflectree_load.h"
 
 namespace {
 

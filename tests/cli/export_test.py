@@ -13,7 +13,7 @@ RUNTIME = pathlib.Path(__file__).resolve().parents[2] / "runtime"
 MATERIAL = "plastic:alpha=0.4"
 ANISOTROPIC = ("ggx:alpha_x=0.5,alpha_y=0.6", "--trials", "4", "--variance", "1")
 COMPARE = """
-#include "reflectree_sample.h"
+#include "reflectree_load.h"
 #include "words.h"
 int main(int argc, char** argv) {
   rfl_sampler a, b;

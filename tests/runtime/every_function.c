@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  * Calls every function of the runtime, so that compilers look at all of it; also as C++. */
-#include "reflectree_sample.h"
+#include "reflectree_load.h"
 
 float every_function(const char* path, const uint32_t* words, size_t count, const uint32_t* bits);
 float every_function(const char* path, const uint32_t* words, size_t count, const uint32_t* bits) {

@@ -3,7 +3,7 @@
 #ifndef REFLECTREE_TESTS_RUNTIME_IN_C_H
 #define REFLECTREE_TESTS_RUNTIME_IN_C_H
 
-#include "reflectree_sample.h"
+#include "reflectree_load.h"
 
 #ifdef __cplusplus
 extern "C" {
