@@ -134,6 +134,8 @@ def seed_words(rng: Rng) -> Tuple[int, int]:
 def as_count(value: Any, name: str) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < 0:
         raise Error(f"{value!r} is no number of directions", name, "give a whole number, 0 or more")
+    if value >= 2**48:
+        raise Error(f"{value} directions fit into no memory", name, "draw them in several calls")
     return int(value)
 
 
@@ -141,6 +143,14 @@ def as_whole(value: Any, name: str) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not 0 <= value < 2**63:
         raise Error(f"{value!r} is no whole number from 0 to 2^63", name, "give one")
     return int(value)
+
+
+def as_threads(value: Any) -> int:
+    """0 for all cores."""
+    count = 0 if value is None else as_whole(value, "threads")
+    if count > 1024:
+        raise Error(f"{count} threads are too many", "threads", "give 1 to 1024, or None for all cores")
+    return count
 
 
 def as_number(value: Any, name: str) -> float:

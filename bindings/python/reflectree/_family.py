@@ -15,8 +15,9 @@ from ._arrays import (Array, Rng, Samples, as_count, as_floats, as_output, as_ve
                       sample_outputs, scalar_or_array, seed_words, spread)
 from ._brdf import Brdf, material
 from ._error import BuildWarning, Error
+from ._files import as_path, as_text
 from ._progress import Progress, opened
-from ._sampler import BuildReport, Sampler, _is_one_shot, _made, _scalars, _target
+from ._sampler import BuildReport, Sampler, _is_one_shot, _made, _scalars, _target, _wanted
 
 
 class FamilySampler:
@@ -54,15 +55,13 @@ class FamilySampler:
         if not isinstance(text, str):
             raise Error(f"a {type(text).__name__} is no family", "text",
                         'give a material\'s text with a range, such as "ggx:alpha=0.02..1"')
-        if not _core.names_family(text):
+        if not _core.names_family(as_text(text, "text")):
             raise Error("no parameter has a range", text, 'write one, such as "ggx:alpha=0.02..1", or use rt.Sampler')
         name, channel = _target(target)
+        wanted = _wanted(expected_trials, one_shot_variance, albedo_error, seed, max_evaluations, threads)
         started = time.perf_counter()
         with opened(progress) as tell:
-            core = _core.Family.build(
-                text, target=name, channel=channel, expected_trials=expected_trials,
-                one_shot_variance=one_shot_variance, albedo_error=albedo_error, seed=seed,
-                max_evaluations=max_evaluations, threads=as_count(threads or 0, "threads"), progress=tell)
+            core = _core.Family.build(text, target=name, channel=channel, progress=tell, **wanted)
         self._take(core, time.perf_counter() - started)
         for note in self.report.notes:
             warnings.warn(note, BuildWarning, stacklevel=2)
@@ -159,7 +158,7 @@ class FamilySampler:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes a sampler file, whole or not at all; :func:`load_family` reads it."""
-        self._core.save(os.fspath(path))
+        self._core.save(as_path(path))
 
     def _rows(self, parameters: Dict[str, Any]) -> Array:
         """Their values in the order of the ranges, along a new last axis."""
@@ -211,7 +210,7 @@ def load_family(path: Union[str, "os.PathLike[str]"]) -> FamilySampler:
     Error
         For a file that is damaged, or holds the sampler of a single material.
     """
-    path = os.fspath(path)
+    path = as_path(path)
     if not _core.names_family(path):
         raise Error("it holds the sampler of a single material", path, "read it by rt.load_sampler(path)")
     return _family_of(_core.Family.from_file(path))
