@@ -35,6 +35,7 @@ def refuses(match, call):
     (np.array([0, 0, 1], np.float16), "float16"),
     ([[0, 0, 1], [0, 0]], "no array"),
     (None, "its type is object"),
+    (np.ma.array([[0.0, 0, 1], [0, 0, 1]], mask=[[0, 0, 0], [1, 1, 1]]), "it has masked entries"),
 ])
 def test_directions(gold, wo, match):
     for call in (lambda: gold.sample(wo), lambda: gold.sample_one_shot(wo), lambda: gold.sample_n(wo, 3),
@@ -69,6 +70,22 @@ def test_an_output_that_is_an_input(gold):
     wo = directions(4)
     drawn = gold.sample(wo)
     refuses("shares memory with an argument", lambda: gold.sample(wo, out=drawn._replace(wi=wo)))
+    refuses("out.weight: it shares memory with another field", lambda: gold.sample(wo, out=drawn._replace(weight=drawn.wi)))
+    columns = np.empty((4, 7))  # of one array, side by side
+    parts = rt.Samples(columns[:, :3], columns[:, 3], columns[:, 4:], drawn.valid)
+    assert np.array_equal(gold.sample(wo, rng=1, out=parts).wi, gold.sample(wo, rng=1).wi)
+
+
+def test_tensors_of_another_device(gold):
+    class Tensor:
+        def __dlpack__(self, **options):
+            raise BufferError("it is on a GPU")
+
+        def __dlpack_device__(self):
+            return 2, 0
+
+    refuses("DLPack gives no NumPy array", lambda: gold.sample(Tensor()))
+    refuses("out: DLPack gives no NumPy array", lambda: gold.albedo(UP, out=Tensor()))
 
 
 @pytest.mark.parametrize("text, match", [
@@ -113,9 +130,16 @@ def test_what_is_no_function():
     (lambda wo, wi: np.full(len(wo), -0.1), r"<lambda> at wo = \(.*\), wi = \(.*\): it returned -0.1"),
     (lambda wo, wi: np.full(len(wo), np.nan), "it returned nan"),
     (lambda wo, wi: np.full(len(wo), 1e60), "it returned 1e\\+60"),
+    (lambda wo, wi: np.ma.array(wi[:, 2], mask=wi[:, 2] < 0.5), "it returned nan"),
 ])
 def test_results_of_functions(f, match):
     refuses(match, lambda: rt.function(f))
+
+
+@pytest.mark.parametrize("kind", [list, np.ma.array, lambda a: a.astype(">f8"), lambda a: a.astype(">i4"),
+                                  lambda a: a.astype(np.float16), lambda a: a.astype(np.longdouble)])
+def test_results_that_are_as_good(kind):
+    assert rt.function(lambda wo, wi: kind(np.ones(len(wo)))).eval(UP, UP) == 1
 
 
 def after(calls, good, bad):
