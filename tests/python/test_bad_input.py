@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Each bad input is an exception with what, where and how, and leaves everything usable."""
 
+import os
 import re
 import subprocess
 import sys
@@ -218,6 +219,7 @@ def test_options(options, match):
         refuses(match, lambda: rt.FamilySampler("ggx:alpha=0.3..0.4", **options))
 
 
+@pytest.mark.skipif("REFLECTREE_SANITIZED" in os.environ, reason="AddressSanitizer needs terabytes of addresses")
 def test_threads_that_the_system_does_not_start():
     """Under a limit of memory, since root may start any number: 1000 stacks need more than is left."""
     code = """
