@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The guards' twins: each planted fault must be caught, and a clean file must not be."""
 import pathlib
+import sys
 import tempfile
 import unittest
 
@@ -9,6 +10,10 @@ import house_rules
 import layers
 import links
 import site_pages
+
+TREE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TREE / "docs/site"))
+import cpp_comments  # noqa: E402
 
 TOP = "// SPDX-License-Identifier: Apache-2.0\n#pragma once\n"
 
@@ -212,6 +217,105 @@ class SitePages(unittest.TestCase):
     def test_no_page_is_a_fault(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(len(site_pages.faults_of(pathlib.Path(folder))), 1)
+
+
+class CppComments(unittest.TestCase):
+    """What Doxygen gets to read; the lines are those of the header."""
+
+    HEADER = """// SPDX-License-Identifier: Apache-2.0
+// Boxes, with a *true* `a < b`:
+//   open(box)   twice
+#pragma once
+
+#include <vector>  // nothing
+
+namespace reflectree {  // nothing
+
+// Not of a declaration.
+
+class Later;  // later.hpp
+
+// A box.
+template <class T>
+class Box {
+ public:
+  // Its
+  // width.
+  float width() const {
+    // A remark.
+    return width_;  // another
+  }
+  enum class Kind { open };  // how
+
+ private:
+  float width_ = 1'000.f;  // radians;
+                           // never 0
+};
+
+// clang-format off
+template <class F> concept Open = requires(const F& f) {
+  f.open();  // nothing
+};
+// clang-format on
+
+// Of two.
+float wider(const Box<float>& a,  // nothing
+            const Box<float>& b);
+
+}  // namespace reflectree
+"""
+    EXPECTED = r"""/// \file
+/// Boxes, with a <em>true</em> <code>a \< b</code>:
+/// <pre>   open(box)   twice</pre>
+#pragma once
+
+#include <vector>  // nothing
+
+namespace reflectree {  // nothing
+
+// Not of a declaration.
+
+class Later;  // later.hpp
+
+/// \brief \copybrief box.hpp \details \copydetails box.hpp \n A box.
+template <class T>
+class Box {
+ public:
+  /// Its
+  /// width.
+  float width() const {
+    // A remark.
+    return width_;  // another
+  }
+  enum class Kind { open };  ///< how
+
+/** \cond */  private:
+  float width_ = 1'000.f;  ///< radians;
+                           ///< never 0
+/** \endcond */ };
+
+// clang-format off
+template <class F> concept Open = requires(const F& f) {
+  f.open();  // nothing
+};
+// clang-format on
+
+/// Of two.
+float wider(const Box<float>& a,  // nothing
+            const Box<float>& b);
+
+}  // namespace reflectree
+"""
+
+    def test_what_doxygen_reads(self):
+        self.assertEqual(cpp_comments.filtered(self.HEADER, pathlib.Path("box.hpp")).split("\n"), self.EXPECTED.split("\n"))
+
+    def test_lines_stay(self):
+        for header in sorted((TREE / "include").rglob("*.hpp")):
+            text = header.read_text(encoding="utf-8")
+            seen = cpp_comments.filtered(text, header)
+            self.assertEqual(seen.count("\n"), text.count("\n"), header)
+            self.assertEqual(seen.count("\\cond"), seen.count("\\endcond"), header)
 
 
 if __name__ == "__main__":

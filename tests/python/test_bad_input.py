@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Each bad input is an exception with what, where and how, and leaves everything usable."""
 
+import os
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -33,6 +36,7 @@ def refuses(match, call):
     (np.array([0, 0, 1], np.float16), "float16"),
     ([[0, 0, 1], [0, 0]], "no array"),
     (None, "its type is object"),
+    (np.ma.array([[0.0, 0, 1], [0, 0, 1]], mask=[[0, 0, 0], [1, 1, 1]]), "it has masked entries"),
 ])
 def test_directions(gold, wo, match):
     for call in (lambda: gold.sample(wo), lambda: gold.sample_one_shot(wo), lambda: gold.sample_n(wo, 3),
@@ -48,6 +52,7 @@ def test_directions(gold, wo, match):
     (lambda s: s.sample_one_shot(UP, [0.5]), r"u: its shape is \(1,\)"),
     (lambda s: s.sample(UP, n=-1), "no number of directions"),
     (lambda s: s.sample(UP, n=2.5), "2.5 is no number of directions"),
+    (lambda s: s.sample(UP, n=2**62), "fit into no memory"),
     (lambda s: s.sample(UP, rng="seed"), "no source of random numbers"),
     (lambda s: s.sample(UP, rng=-1), "no source of random numbers"),
     (lambda s: s.pdf(UP, UP, mode="quick"), "'quick' is no mode; say 'exact' or 'one-shot'"),
@@ -66,6 +71,22 @@ def test_an_output_that_is_an_input(gold):
     wo = directions(4)
     drawn = gold.sample(wo)
     refuses("shares memory with an argument", lambda: gold.sample(wo, out=drawn._replace(wi=wo)))
+    refuses("out.weight: it shares memory with another field", lambda: gold.sample(wo, out=drawn._replace(weight=drawn.wi)))
+    columns = np.empty((4, 7))  # of one array, side by side
+    parts = rt.Samples(columns[:, :3], columns[:, 3], columns[:, 4:], drawn.valid)
+    assert np.array_equal(gold.sample(wo, rng=1, out=parts).wi, gold.sample(wo, rng=1).wi)
+
+
+def test_tensors_of_another_device(gold):
+    class Tensor:
+        def __dlpack__(self, **options):
+            raise BufferError("it is on a GPU")
+
+        def __dlpack_device__(self):
+            return 2, 0
+
+    refuses("DLPack gives no NumPy array", lambda: gold.sample(Tensor()))
+    refuses("out: DLPack gives no NumPy array", lambda: gold.albedo(UP, out=Tensor()))
 
 
 @pytest.mark.parametrize("text, match", [
@@ -73,6 +94,23 @@ def test_an_output_that_is_an_input(gold):
 def test_materials(text, match):
     refuses(match, lambda: rt.material(text))
     refuses(match, lambda: rt.Sampler(text))
+
+
+@pytest.mark.parametrize("text, match", [(3, "a int is no text"), (None, "is no text"), ("ggx\udcff", "none of Unicode")])
+def test_what_is_no_text(text, match):
+    refuses(match, lambda: rt.material(text))
+
+
+def test_what_is_no_path(gold, tmp_path):
+    path = tmp_path / "gold.rfl"
+    gold.save(path)
+    closed = open(path, "rb")
+    closed.close()
+    with open(path, "rb") as opened:
+        for what in (closed, opened, 3, None, b"gold.rfl"):
+            for call in (rt.load, rt.members, rt.load_sampler, rt.load_family, gold.save):
+                refuses(r"path: a \w+ is no path; give a str or a pathlib.Path", lambda: call(what))
+    refuses("none of Unicode", lambda: rt.load_sampler("\udcff.rfl"))
 
 
 def test_what_is_no_function():
@@ -93,9 +131,16 @@ def test_what_is_no_function():
     (lambda wo, wi: np.full(len(wo), -0.1), r"<lambda> at wo = \(.*\), wi = \(.*\): it returned -0.1"),
     (lambda wo, wi: np.full(len(wo), np.nan), "it returned nan"),
     (lambda wo, wi: np.full(len(wo), 1e60), "it returned 1e\\+60"),
+    (lambda wo, wi: np.ma.array(wi[:, 2], mask=wi[:, 2] < 0.5), "it returned nan"),
 ])
 def test_results_of_functions(f, match):
     refuses(match, lambda: rt.function(f))
+
+
+@pytest.mark.parametrize("kind", [list, np.ma.array, lambda a: a.astype(">f8"), lambda a: a.astype(">i4"),
+                                  lambda a: a.astype(np.float16), lambda a: a.astype(np.longdouble)])
+def test_results_that_are_as_good(kind):
+    assert rt.function(lambda wo, wi: kind(np.ones(len(wo)))).eval(UP, UP) == 1
 
 
 def after(calls, good, bad):
@@ -164,9 +209,32 @@ def test_a_function_that_keeps_or_changes_its_arguments():
 @pytest.mark.parametrize("options, match", [
     ({"target": "red"}, "no target is called 'red'"), ({"target": 3}, "channel 3 of 3"),
     ({"expected_trials": 0.5}, "trials"), ({"albedo_error": -1}, "albedo"), ({"threads": -1}, "threads"),
-    ({"progress": 3}, "cannot be called")])
+    ({"progress": 3}, "cannot be called"), ({"expected_trials": "x"}, "'x' is no number"), ({"seed": -1}, "seed: -1 is no"),
+    ({"seed": 1.5}, "seed: 1.5 is no"), ({"max_evaluations": 2.5}, "max_evaluations: 2.5 is no"),
+    ({"one_shot_variance": []}, "is no number"), ({"threads": 10**6}, "1000000 threads are too many"),
+    ({"threads": 0.5}, "threads: 0.5 is no"), ({"target": "\udcff"}, "none of Unicode"), ({"target": 2**40}, "channel")])
 def test_options(options, match):
     refuses(match, lambda: rt.Sampler("lambert", **options))
+    if "channel 3" not in match:
+        refuses(match, lambda: rt.FamilySampler("ggx:alpha=0.3..0.4", **options))
+
+
+@pytest.mark.skipif("REFLECTREE_SANITIZED" in os.environ, reason="AddressSanitizer needs terabytes of addresses")
+def test_threads_that_the_system_does_not_start():
+    """Under a limit of memory, since root may start any number: 1000 stacks need more than is left."""
+    code = """
+import pathlib, resource, reflectree as rt
+used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + 500_000_000,) * 2)
+try:
+    rt.Sampler("lambert", threads=1000)
+except rt.Error as error:
+    print(error)
+rt.Sampler("lambert", threads=2)
+"""
+    done = subprocess.run([sys.executable, "-X", "dev", "-W", "error", "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert re.fullmatch(r"threads: the system starts only \d+ of 1000; ask for fewer\n", done.stdout)
 
 
 def test_files(gold, mine, tmp_path):

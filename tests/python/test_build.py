@@ -88,8 +88,10 @@ def test_progress_without_tqdm(monkeypatch):
 def test_ctrl_c_stops_a_build(what):
     """A process that would build for long is sent SIGINT once it says that it has begun."""
     program = textwrap.dedent(f"""
-        import numpy as np, sys, time
+        import numpy as np, signal, sys, time
         import reflectree as rt
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts with & ignores it
 
         def slow(wo, wi):
             time.sleep(0.05)

@@ -37,12 +37,11 @@ class Samples(NamedTuple):
 def as_floats(value: Any, name: str) -> Array:
     """An array of float32 or float64: the caller's own where it is one, also by DLPack."""
     if isinstance(value, np.ndarray):
+        if np.any(getattr(value, "mask", False)):  # of numpy.ma, whose data there is anything
+            raise Error("it has masked entries", name, "leave such rows out")
         array = np.asarray(value)
     elif hasattr(value, "__dlpack__"):
-        try:
-            array = np.from_dlpack(value)
-        except Exception as error:  # each library has its own
-            raise Error(f"DLPack gives no NumPy array ({error})", name, "move it to the CPU, without gradients") from error
+        array = from_dlpack(value, name)
     else:
         try:
             array = np.asarray(value)
@@ -53,6 +52,13 @@ def as_floats(value: Any, name: str) -> Array:
     if array.dtype.kind != "f" or array.dtype.itemsize not in (4, 8):
         raise Error(f"its type is {array.dtype}", name, "make it float32 or float64")
     return array if array.dtype.isnative else array.astype(array.dtype.newbyteorder("="))
+
+
+def from_dlpack(value: Any, name: str) -> Array:
+    try:
+        return np.from_dlpack(value)
+    except Exception as error:  # each library has its own
+        raise Error(f"DLPack gives no NumPy array ({error})", name, "move it to the CPU, without gradients") from error
 
 
 def as_vectors(value: Any, width: int, name: str) -> Array:
@@ -86,7 +92,7 @@ def as_output(value: Any, shape: Tuple[int, ...], dtype: Any, name: str, inputs:
     """The array to write to: a new one, or the caller's where it will do."""
     if value is None:
         return np.empty(shape, dtype)
-    array = np.from_dlpack(value) if not isinstance(value, np.ndarray) and hasattr(value, "__dlpack__") else value
+    array = value if isinstance(value, np.ndarray) or not hasattr(value, "__dlpack__") else from_dlpack(value, name)
     if not isinstance(array, np.ndarray):
         raise Error(f"a {type(value).__name__} cannot be written to", name, "give an array")
     wanted = "bool" if dtype is np.bool_ else "float32 or float64"
@@ -109,10 +115,16 @@ def sample_outputs(out: Optional[Samples], shape: Tuple[int, ...], value_shape: 
     if len(parts) != 4:
         raise Error(f"it has {len(parts)} arrays", "out", "give rt.Samples(wi, pdf, weight, valid)")
     wi, pdf, weight, valid = parts
-    return Samples(as_output(wi, shape + (3,), dtype, "out.wi", inputs),
-                   as_output(pdf, shape, dtype, "out.pdf", inputs),
-                   as_output(weight, shape + value_shape, dtype, "out.weight", inputs),
-                   as_output(valid, shape, np.bool_, "out.valid", inputs))
+    result = Samples(as_output(wi, shape + (3,), dtype, "out.wi", inputs),
+                     as_output(pdf, shape, dtype, "out.pdf", inputs),
+                     as_output(weight, shape + value_shape, dtype, "out.weight", inputs),
+                     as_output(valid, shape, np.bool_, "out.valid", inputs))
+    if out is not None:
+        for k, name in enumerate(Samples._fields):
+            for array in result[:k]:  # the second question is dear, and asked of arrays that lie within each other
+                if np.may_share_memory(array, result[k]) and np.shares_memory(array, result[k]):
+                    raise Error("it shares memory with another field", f"out.{name}", "give an array of its own")
+    return result
 
 
 def scalar_or_array(array: Array) -> Any:
@@ -134,6 +146,8 @@ def seed_words(rng: Rng) -> Tuple[int, int]:
 def as_count(value: Any, name: str) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < 0:
         raise Error(f"{value!r} is no number of directions", name, "give a whole number, 0 or more")
+    if value >= 2**48:
+        raise Error(f"{value} directions fit into no memory", name, "draw them in several calls")
     return int(value)
 
 
@@ -141,6 +155,14 @@ def as_whole(value: Any, name: str) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not 0 <= value < 2**63:
         raise Error(f"{value!r} is no whole number from 0 to 2^63", name, "give one")
     return int(value)
+
+
+def as_threads(value: Any) -> int:
+    """0 for all cores."""
+    count = 0 if value is None else as_whole(value, "threads")
+    if count > 1024:
+        raise Error(f"{count} threads are too many", "threads", "give 1 to 1024, or None for all cores")
+    return count
 
 
 def as_number(value: Any, name: str) -> float:

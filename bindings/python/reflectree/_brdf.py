@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from ._arrays import Array, as_output, as_vectors, common_dtype, common_shape, scalar_or_array, spread
 from ._error import Error
+from ._files import as_path, as_text
 
 BrdfLike = Union["Brdf", str, "os.PathLike[str]", Callable[[Array, Array], Array]]
 
@@ -96,7 +97,7 @@ def material(text: str) -> Brdf:
     Error
         For an unknown model, a value out of range, a file that cannot be read.
     """
-    core = _core.Brdf.from_text(text, "")
+    core = _core.Brdf.from_text(as_text(text, "material"), "")
     return Brdf(core, core.name, (material, (text,)))
 
 
@@ -105,13 +106,14 @@ def load(path: Union[str, "os.PathLike[str]"], member: str = "") -> Brdf:
 
     The format is told by the content. :func:`members` lists what ``member`` may be.
     """
-    core = _core.Brdf.from_file(os.fspath(path), member)
-    return Brdf(core, core.name, (load, (os.fspath(path), member)))
+    path, member = as_path(path), as_text(member, "member")
+    core = _core.Brdf.from_file(path, member)
+    return Brdf(core, core.name, (load, (path, member)))
 
 
 def members(path: Union[str, "os.PathLike[str]"]) -> List[str]:
     """The members of a file, in order; empty for a file that is one material."""
-    return list(_core.list_members(os.fspath(path)))
+    return list(_core.list_members(as_path(path)))
 
 
 def models() -> List[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, Optional, Union
 
-from ._arrays import as_whole
+from ._arrays import as_threads, as_whole
 from ._brdf import Brdf, BrdfLike, as_brdf
 from ._checks import need_judges
 from ._diagnosis import Diagnosis
@@ -83,7 +83,7 @@ def doctor(subject: Union[None, Sampler, BrdfLike] = None, *, eval: Optional[Cal
         Ctrl-C ends the work.
     """
     core = need_judges("rt.doctor")
-    count, number = as_whole(threads or 0, "threads"), as_whole(seed, "seed")
+    count, number = as_threads(threads), as_whole(seed, "seed")
     functions = [f for f in (eval, sample, pdf) if f is not None]
     if (subject is None) == (not functions):
         raise Error("one subject is wanted", "rt.doctor", "give a sampler or a material, or the functions eval, sample, pdf")

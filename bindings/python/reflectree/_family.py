@@ -15,8 +15,9 @@ from ._arrays import (Array, Rng, Samples, as_count, as_floats, as_output, as_ve
                       sample_outputs, scalar_or_array, seed_words, spread)
 from ._brdf import Brdf, function, material
 from ._error import BuildWarning, Error
+from ._files import as_path, as_text
 from ._progress import Progress, opened
-from ._sampler import BuildReport, Sampler, _is_one_shot, _made, _scalars, _target
+from ._sampler import BuildReport, Sampler, _is_one_shot, _made, _scalars, _target, _wanted
 from ._tables import Tables, tables_of
 
 # Arguments of the methods; a parameter of a function cannot have such a name.
@@ -72,16 +73,13 @@ class FamilySampler:
         given = _given_family(family, ranges)
         kind, channel = _target(target)
         made = (family, *_name_and_type(family, name, dtype)) if callable(family) else None
+        wanted = _wanted(expected_trials, one_shot_variance, albedo_error, seed, max_evaluations, threads)
         started = time.perf_counter()
         with opened(progress) as tell:
-            options = dict(
-                target=kind, channel=channel, expected_trials=expected_trials, one_shot_variance=one_shot_variance,
-                albedo_error=albedo_error, seed=seed, max_evaluations=max_evaluations,
-                threads=as_count(threads or 0, "threads"), progress=tell)
             if made:
-                core = _core.Family.build_function(*made, given, **options)  # type: ignore[arg-type]
+                core = _core.Family.build_function(*made, given, target=kind, channel=channel, progress=tell, **wanted)
             else:
-                core = _core.Family.build(family, **options)  # type: ignore[arg-type]
+                core = _core.Family.build(family, target=kind, channel=channel, progress=tell, **wanted)  # type: ignore[arg-type]
         self._take(core, made, time.perf_counter() - started)
         for note in self.report.notes:
             warnings.warn(note, BuildWarning, stacklevel=2)
@@ -196,7 +194,7 @@ class FamilySampler:
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes a sampler file, whole or not at all; :func:`load_family` reads it, and must be given a function of
         Python again."""
-        self._core.save(os.fspath(path))
+        self._core.save(as_path(path))
 
     def _rows(self, parameters: Dict[str, Any]) -> Array:
         """Their values in the order of the ranges, along a new last axis."""
@@ -246,7 +244,7 @@ def _given_family(family: Any, ranges: Dict[str, Any]) -> List[Tuple[str, float,
         if ranges:
             raise Error(f"a text has its ranges inside, and {next(iter(ranges))} is given beside it", family,
                         'write them as in "ggx:alpha=0.02..1"')
-        if not _core.names_family(family):
+        if not _core.names_family(as_text(family, "family")):
             raise Error("no parameter has a range", family, 'write one, such as "ggx:alpha=0.02..1", or use rt.Sampler')
         return []
     if not callable(family):
@@ -300,7 +298,7 @@ def load_family(path: Union[str, "os.PathLike[str]"], f: Optional[Callable[..., 
     Error
         For a file that is damaged, or holds the sampler of a single material, and for a function that is another.
     """
-    path = os.fspath(path)
+    path = as_path(path)
     text = _core.sampler_file_material(path)
     if not _core.names_family(path):
         raise Error("it holds the sampler of a single material", path, "read it by rt.load_sampler(path)")

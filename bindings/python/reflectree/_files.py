@@ -1,17 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files are written whole or not at all."""
+"""Paths and texts; files are written whole or not at all."""
 
 from __future__ import annotations
 
 import os
 import tempfile
-from typing import Union
+from typing import Any, Union
 
 from ._error import Error
 
 
+def as_text(value: Any, name: str) -> str:
+    if not isinstance(value, str):
+        raise Error(f"a {type(value).__name__} is no text", name, "give a str")
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:
+        raise Error(f"{value!r} has characters that are none of Unicode", name, "leave them out") from error
+    return value
+
+
+def as_path(value: Any) -> str:
+    if not isinstance(value, (str, os.PathLike)):
+        raise Error(f"a {type(value).__name__} is no path", "path", "give a str or a pathlib.Path; open files are not read")
+    return as_text(os.fspath(value), "path")
+
+
 def write_text(path: Union[str, "os.PathLike[str]"], text: str) -> None:
-    path = os.fspath(path)
+    path = as_path(path)
     try:
         handle, temporary = tempfile.mkstemp(dir=os.path.dirname(path) or ".", prefix=".reflectree-")
         try:

@@ -7,15 +7,16 @@ import html
 import os
 import time
 import warnings
-from typing import Any, Callable, List, NamedTuple, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _core
-from ._arrays import (Array, Rng, Samples, as_count, as_output, as_vectors, common_dtype, common_shape,
-                      sample_outputs, scalar_or_array, seed_words, spread)
+from ._arrays import (Array, Rng, Samples, as_count, as_number, as_output, as_threads, as_vectors, as_whole,
+                      common_dtype, common_shape, sample_outputs, scalar_or_array, seed_words, spread)
 from ._brdf import Brdf, BrdfLike, as_brdf
 from ._error import BuildWarning, Error
+from ._files import as_path, as_text
 from ._progress import Progress, opened
 from ._tables import Tables, tables_of
 
@@ -92,14 +93,12 @@ class Sampler:
                  progress: Progress = None) -> None:
         f = as_brdf(brdf)
         name, channel = _target(target)
+        wanted = _wanted(expected_trials, one_shot_variance, albedo_error, seed, max_evaluations, threads)
         if channel >= f.channels:
             raise Error(f"channel {channel} of {f.channels}", "target", f"say 0 to {f.channels - 1}")
         started = time.perf_counter()
         with opened(progress) as tell:
-            core = _core.Sampler.build(
-                f._core, target=name, channel=channel, expected_trials=expected_trials,
-                one_shot_variance=one_shot_variance, albedo_error=albedo_error, seed=seed,
-                max_evaluations=max_evaluations, threads=as_count(threads or 0, "threads"), progress=tell)
+            core = _core.Sampler.build(f._core, target=name, channel=channel, progress=tell, **wanted)
         self._take(f, core, time.perf_counter() - started)
         for note in self.report.notes:
             warnings.warn(note, BuildWarning, stacklevel=2)
@@ -240,7 +239,7 @@ class Sampler:
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes a sampler file, whole or not at all. The function is not inside: :func:`load_sampler` finds a
         material again by its text, and must be given a function of Python."""
-        self._core.save(os.fspath(path))
+        self._core.save(as_path(path))
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _sampler_again, (self.brdf, self._core.to_bytes())
@@ -278,7 +277,21 @@ def _scalars(samples: Samples) -> Samples:
 
 def _target(target: Union[str, int]) -> Tuple[str, int]:
     """Its name, and the number of a channel."""
-    return (target, 0) if isinstance(target, str) else ("channel", as_count(target, "target"))
+    if isinstance(target, str):
+        return as_text(target, "target"), 0
+    channel = as_whole(target, "target")
+    if channel > 255:
+        raise Error(f"channel {channel}", "target", "a function has at most 256 channels, from 0")
+    return "channel", channel
+
+
+def _wanted(expected_trials: float, one_shot_variance: float, albedo_error: float, seed: int, max_evaluations: int,
+            threads: Optional[int]) -> Dict[str, Any]:
+    """The options of a build, each a number of its kind."""
+    return {"expected_trials": as_number(expected_trials, "expected_trials"),
+            "one_shot_variance": as_number(one_shot_variance, "one_shot_variance"),
+            "albedo_error": as_number(albedo_error, "albedo_error"), "seed": as_whole(seed, "seed"),
+            "max_evaluations": as_whole(max_evaluations, "max_evaluations"), "threads": as_threads(threads)}
 
 
 def _is_one_shot(mode: str) -> bool:
@@ -312,7 +325,7 @@ def load_sampler(path: Union[str, "os.PathLike[str]"], brdf: Optional[BrdfLike] 
     Error
         For a file that is damaged, and a function that is another.
     """
-    path = os.fspath(path)
+    path = as_path(path)
     text = _core.sampler_file_material(path)
     if _core.names_family(path):
         raise Error("it holds the sampler of a family", path, "read it by rt.load_family(path)")

@@ -12,10 +12,11 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ._arrays import Array, as_number, as_whole
+from ._arrays import Array, as_number, as_threads, as_whole
 from ._brdf import Brdf, BrdfLike, as_brdf
 from ._checks import rows_html
 from ._error import Error
+from ._files import as_path
 from ._progress import Progress, opened
 
 DEMO = pathlib.Path(__file__).with_name("demo.xml")
@@ -91,11 +92,11 @@ def render(scene: Union[None, str, "os.PathLike[str]"] = None, *, material: Opti
     samples = 0 if spp is None else as_whole(spp, "spp")
     if spp is not None and not 1 <= samples <= 2**30:
         raise Error(f"{spp} samples per pixel", "spp", "give 1 to 2^30, or None for the scene's")
-    path = os.fspath(DEMO if scene is None else scene)
+    path = as_path(DEMO if scene is None else scene)
     with opened(progress) as tell:
         picture, notes = core.render(path, xml="", defines=words, sampler=sampler, integrator=integrator or "",
                                      technique=technique, samples=samples, seed=as_whole(seed, "seed"),
-                                     threads=as_whole(threads or 0, "threads"), progress=tell)
+                                     threads=as_threads(threads), progress=tell)
     for note in notes:
         warnings.warn(note, RenderWarning, stacklevel=2)
     return np.asarray(picture)
@@ -217,7 +218,7 @@ def compare(materials: Union[BrdfLike, Sequence[BrdfLike]], *, samplers: Optiona
     with opened(progress) as tell:
         found = core.compare([b._core for b in brdfs], names=[b.name for b in brdfs], samplers=list(samplers or ()),
                              theta_o_deg=degrees, quick=bool(quick), seed=as_whole(seed, "seed"),
-                             threads=as_whole(threads or 0, "threads"), progress=tell)
+                             threads=as_threads(threads), progress=tell)
     verdict = found["verdict"]
     return Comparison(list(found["rows"]), list(verdict["scores"]), list(verdict["losses"]), list(found["faults"]),
                       verdict["materials"], verdict["won"])

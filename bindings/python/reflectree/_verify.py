@@ -7,7 +7,7 @@ import html
 import json
 from typing import Any, Dict, List, NamedTuple, Optional, Union
 
-from ._arrays import as_number, as_whole
+from ._arrays import as_number, as_threads, as_whole
 from ._brdf import BrdfLike
 from ._checks import Check, Figure, checks_html, need_judges
 from ._progress import Progress, opened
@@ -107,7 +107,7 @@ def verify(sampler: Union[Sampler, BrdfLike], *, effort: float = 1.0, seed: int 
         Ctrl-C ends the work.
     """
     core = need_judges("rt.verify")
-    count, number = as_whole(threads or 0, "threads"), as_whole(seed, "seed")
+    count, number = as_threads(threads), as_whole(seed, "seed")
     if not isinstance(sampler, Sampler):
         sampler = Sampler(sampler, seed=number, threads=count)
     with opened(progress) as tell:

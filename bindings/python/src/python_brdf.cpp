@@ -136,7 +136,11 @@ nb::object PythonBrdf::ask(const Pairs& pairs) const {
   nb::object array = numpy.attr("asarray")(returned);
   const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
   const auto bytes = nb::cast<int>(array.attr("itemsize"));
-  if (kind == "f" && (bytes == 4 || bytes == 8)) return array;
+  // What numpy.ma masks is no value, and its data there is anything.
+  if (kind != "O" && nb::hasattr(returned, "filled"))
+    return returned.attr("astype")("float64").attr("filled")(NAN);
+  if (kind == "f" && (bytes == 4 || bytes == 8) && nb::cast<bool>(array.attr("dtype").attr("isnative")))
+    return array;
   if (kind == "f" || kind == "i" || kind == "u" || kind == "b") return array.attr("astype")("float64");
   throw Error("it returned a " + nb::cast<std::string>(nb::handle(returned.type()).attr("__name__")) +
                   " instead of an array of numbers",

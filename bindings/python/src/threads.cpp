@@ -2,7 +2,11 @@
 #include "threads.hpp"
 
 #include <algorithm>
+#include <string>
+#include <system_error>
 #include <utility>
+
+#include "reflectree/error.hpp"
 
 namespace reflectree::python {
 
@@ -11,10 +15,19 @@ thread_local bool inside = false;  // of some parallel_for
 }  // namespace
 
 Threads::Threads(unsigned count) {
-  for (unsigned i = 1; i < count; ++i) helpers_.emplace_back([this] { work(); });
+  try {
+    for (unsigned i = 1; i < count; ++i) helpers_.emplace_back([this] { work(); });
+  } catch (const std::system_error&) {  // a thread that is not joined would end the process
+    end();
+    throw Error(
+        "the system starts only " + std::to_string(helpers_.size() + 1) + " of " + std::to_string(count),
+        "threads", "ask for fewer");
+  }
 }
 
-Threads::~Threads() {
+Threads::~Threads() { end(); }
+
+void Threads::end() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;

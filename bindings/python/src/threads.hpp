@@ -17,6 +17,7 @@ class Threads {
  public:
   using Body = std::function<void(std::size_t begin, std::size_t end)>;
 
+  // Throws Error where the system does not start as many.
   explicit Threads(unsigned count);
   ~Threads();
   Threads(const Threads&) = delete;
@@ -27,6 +28,7 @@ class Threads {
   void parallel_for(std::size_t n, const Body& body);
 
  private:
+  void end();
   void work();
   void take_ranges(const Body& body, bool is_caller);
 
