@@ -76,10 +76,11 @@ class FamilySampler:
         wanted = _wanted(expected_trials, one_shot_variance, albedo_error, seed, max_evaluations, threads)
         started = time.perf_counter()
         with opened(progress) as tell:
+            wanted.update(target=kind, channel=channel, progress=tell)
             if made:
-                core = _core.Family.build_function(*made, given, target=kind, channel=channel, progress=tell, **wanted)
+                core = _core.Family.build_function(*made, given, **wanted)
             else:
-                core = _core.Family.build(family, target=kind, channel=channel, progress=tell, **wanted)  # type: ignore[arg-type]
+                core = _core.Family.build(family, **wanted)  # type: ignore[arg-type]
         self._take(core, made, time.perf_counter() - started)
         for note in self.report.notes:
             warnings.warn(note, BuildWarning, stacklevel=2)
