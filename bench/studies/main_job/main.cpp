@@ -31,7 +31,7 @@ int run(int argc, char** argv) {
   CLI::App app{"The main job, measured on every material"};
   const char* folder = std::getenv("REFLECTREE_DATA");
   std::string data = folder ? folder : "", only, markdown, json, resume;
-  bool reduced = false, list = false, untimed = false, rebuild = false;
+  bool reduced = false, list = false, untimed = false, rebuild = false, kept_only = false;
   int threads = 2;
   StudyOptions options;
   app.add_option("--data", data, "folder of the measured materials (default: REFLECTREE_DATA)");
@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   app.add_flag("--untimed", untimed, "do not judge build times (other work is running)");
   app.add_flag("--rebuild", rebuild,
                "with --resume: time the builds of kept materials anew, on a quiet machine");
+  app.add_flag("--kept", kept_only, "with --resume: print what is kept, measure nothing new");
   app.add_flag("--list", list, "list the materials");
   try {
     app.parse(argc, argv);
@@ -60,7 +61,7 @@ int run(int argc, char** argv) {
     options.random_angles = 30;
     options.albedo_directions = 60;
     options.albedo_trials = 1'000'000;
-    options.overshoot_trials = std::min<std::uint64_t>(options.overshoot_trials, 30'000'000);
+    options.overshoot_trials = std::min<std::uint64_t>(options.overshoot_trials, 10'000'000);
     options.probed_wo = 2000;
   }
   if (reduced) {
@@ -94,6 +95,10 @@ int run(int argc, char** argv) {
                      all.back().build_seconds);
         write_file_atomically(kept, nlohmann::json(all.back()).dump(1));
       }
+      continue;
+    }
+    if (kept_only) {
+      std::fprintf(stderr, "%s: not measured\n", material.name.c_str());
       continue;
     }
     const Measurement m = measure(material, load(material, data), options, host);

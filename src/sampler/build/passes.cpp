@@ -115,15 +115,29 @@ std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& optio
   return slabs;
 }
 
-float median_variance(const std::vector<Slab>& slabs) {
-  std::vector<double> variance;
+namespace {
+
+// Over the slabs where something is to be seen and that are to keep what was asked for.
+template <class Value>
+double median(const std::vector<Slab>& slabs, const Value& value) {
+  std::vector<double> all;
   for (const Slab& slab : slabs) {
-    if (is_loose(slab)) continue;
-    if (total_of(slab).ideal > 0) variance.push_back(total_of(slab).variance());
+    const SlabTotal sum = total_of(slab);
+    if (!is_loose(slab) && sum.ideal > 0) all.push_back(value(sum));
   }
-  if (variance.empty()) return 0;
-  std::nth_element(variance.begin(), variance.begin() + std::ptrdiff_t(variance.size() / 2), variance.end());
-  return float(variance[variance.size() / 2]);
+  if (all.empty()) return 0;
+  std::nth_element(all.begin(), all.begin() + std::ptrdiff_t(all.size() / 2), all.end());
+  return all[all.size() / 2];
+}
+
+}  // namespace
+
+float median_variance(const std::vector<Slab>& slabs) {
+  return float(median(slabs, [](const SlabTotal& sum) { return sum.variance(); }));
+}
+
+double median_trials(const std::vector<Slab>& slabs) {
+  return median(slabs, [](const SlabTotal& sum) { return sum.cost; });
 }
 
 double worst_variance(const std::vector<Slab>& slabs) {
