@@ -44,8 +44,16 @@ std::vector<std::string> misses_of(const Measurement& m, const StudyOptions&) {
     if (limit > 0 && value > limit)
       misses.push_back(text("%s %.3g%s, promised %.3g", what, value, unit, limit));
   };
+  // Of each check the first line that failed, and how many did.
+  std::vector<std::string> seen;
   for (const Verdict& v : m.verdicts) {
-    if (!v.passed) misses.push_back(v.line);
+    if (v.passed || std::find(seen.begin(), seen.end(), v.check) != seen.end()) continue;
+    seen.push_back(v.check);
+    const auto same = [&](const Verdict& w) { return w.check == v.check; };
+    const auto failed = [&](const Verdict& w) { return w.check == v.check && !w.passed; };
+    misses.push_back(text("%td of %td: ", std::count_if(m.verdicts.begin(), m.verdicts.end(), failed),
+                          std::count_if(m.verdicts.begin(), m.verdicts.end(), same)) +
+                     v.line);
   }
   at_most("trials in the worst slab", m.worst_trials, 1.2505);
   // Tables keep what they state, as the checks above have it.
@@ -81,9 +89,8 @@ std::string anisotropic_page(const std::vector<Measurement>& all, const StudyOpt
       "the largest ratio to a bound that a search found. dead: share of one-shot samples where the function "
       "is 0.\n\n";
   out +=
-      "| material | domain | slabs | leaves | KiB | build | trials | albedo | variance | p | overshoot, "
-      "attack "
-      "| dead | promises |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "| material | domain | slabs | leaves | KiB | build | trials | albedo | variance | p | overshoot "
+      "| attack | dead | promises |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::string list;
   for (const Measurement& m : all) {
     const std::vector<std::string> misses = misses_of(m, options);

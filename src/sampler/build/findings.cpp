@@ -169,7 +169,8 @@ std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vec
                          range_of(*dear, parameters).c_str(), double(options.expected_trials)) +
                     end);
   }
-  if (spent && overshoot > 1e-6) {
+  const bool anisotropic = exact.front().box.axes > 1 && exact.front().box.slot[1] == 1;
+  if ((spent || anisotropic) && overshoot > 1e-6) {
     notes.push_back(text("bounds of exact mode miss %.2g of the function in the worst slab, as their attack "
                          "estimates it, and bend its density by as much; one-shot mode is unbiased; ",
                          overshoot) +
