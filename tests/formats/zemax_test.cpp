@@ -196,6 +196,53 @@ TEST(Zemax, NoiseIsInterpolatedAndTheValueCut) {
   EXPECT_GT(facts.clipped[0], 0U);
 }
 
+// The integral of f cos_i by a lattice, equal shares of the disk.
+double lattice_albedo(const AnyBrdf& f, Direction wo) {
+  constexpr int rings = 300, sectors = 480;
+  double sum = 0;
+  for (int i = 0; i < rings; ++i) {
+    const double theta = std::asin(std::sqrt((i + 0.5) / rings));
+    for (int k = 0; k < sectors; ++k)
+      sum += double(value(f, wo, direction(theta, 2 * pi_v<double> * (k + 0.5) / sectors)));
+  }
+  return pi_v<double> * sum / (rings * sectors);
+}
+double worst_told(const AnyBrdf& f, const AnyBrdf& teller) {
+  double worst = 0;
+  for (const double theta : {0.1, 0.6, 1.2, 1.5}) {
+    for (const double phi : {0.3, 2.5, 4.}) {
+      const Direction wo = direction(theta, phi);
+      worst = std::max(worst, std::abs(teller.traits().albedo(wo) / lattice_albedo(f, wo) - 1));
+    }
+  }
+  return worst;
+}
+TEST(Zemax, SeveralRotationsTellTheirAlbedo) {
+  ZemaxRecipe recipe;
+  const AnyBrdf whole = brdf(recipe);
+  EXPECT_LT(worst_told(whole, whole), 2e-4);
+  // Nodes that begin late, and azimuths of half a circle.
+  recipe.symmetry = "PlaneSymmetrical", recipe.azimuth = {0, 45, 180}, recipe.radial = {10, 35, 80};
+  const AnyBrdf half = brdf(recipe);
+  EXPECT_LT(worst_told(half, half), 2e-4);
+}
+TEST(Zemax, NobodyTellsWhatIsCutOrKnownAnyway) {
+  ZemaxRecipe recipe;
+  recipe.value = [](int, double, double, double, double s) { return s > 1 ? -0.01 : 1; };
+  EXPECT_FALSE(brdf(recipe).traits().albedo) << "values are cut at 0";
+  recipe.rotation = {0};
+  recipe.value = ZemaxRecipe{}.value;
+  EXPECT_FALSE(brdf(recipe).traits().albedo) << "isotropic";
+}
+// The judge can fail: the albedo of a file with other entries.
+TEST(ZemaxTwin, AnAlbedoOfAnotherFile) {
+  ZemaxRecipe other;
+  other.value = [](int c, double r, double i, double a, double s) {
+    return ZemaxRecipe{}.value(c, r, i, a, s) * (s > 1 ? 1.01 : 1);
+  };
+  EXPECT_GT(worst_told(brdf({}), brdf(other)), 1e-3);
+}
+
 TEST(Zemax, ThreeCurvesAreOneColourOrThreeFiles) {
   ZemaxRecipe recipe;
   recipe.content = "XYZ";

@@ -7,6 +7,7 @@
 
 #include "functions.hpp"
 #include "reflectree/brdf/tables/klems_table.hpp"
+#include "reflectree/brdf/tables/specular_table.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/sampler_file.hpp"
 
@@ -142,6 +143,43 @@ struct WrongAboutItself : KlemsTable {
 };
 TEST(ViewerStepsTwin, AnAlbedoToldWrongly) {
   EXPECT_THROW(build(AnyBrdf(WrongAboutItself{patches()})), Error);
+}
+
+// Noise over viewers and directions, of twelve rotations of the sample: nothing that any tree could resolve.
+SpecularTable<float> noise() {
+  SpecularTable<float> table;
+  for (int k = 0; k <= 12; ++k)
+    table.axes.rotation.push_back(float(k) * pi / 6), table.axes.azimuth.push_back(float(k) * pi / 6);
+  table.axes.theta_o = {0.2f, 0.7f, 1.2f}, table.axes.radial = {0, 0.2f, 0.5f, 1, 2, pi};
+  const std::size_t width = 6, circle = 12 * width, slice = 3 * (circle + width);
+  Pcg32 u(7);
+  for (std::size_t i = 0; i < table.axes.size(); ++i) {
+    const float a = to_unit_float(u());
+    table.values.push_back(0.02f + a * a * a * (i % width < 2 ? 4.f : 0.5f));
+    if (i % (circle + width) >= circle) table.values[i] = table.values[i - circle];  // circles close
+    if (i / slice == 12) table.values[i] = table.values[i % slice];
+  }
+  return table;
+}
+// Whoever comes first may not take all: before the budget was shared the worst slab took 120 trials.
+TEST(ViewerSteps, ASmallBudgetIsSharedAmongSlabs) {
+  const AnyBrdf f = noise();
+  BuildOptions options;
+  options.max_evaluations = 8'000'000;
+  const SamplerData data = build(f, options);
+  EXPECT_LT(data.report.expected_trials, 4);
+  EXPECT_LE(data.albedo.relative_error, 1.001e-4f);
+  EXPECT_FALSE(data.report.notes.empty());
+  std::string notes;
+  for (const std::string& note : data.report.notes) notes += note + '\n';
+  EXPECT_NE(notes.find("trials on average"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("bounds of exact mode miss"), std::string::npos) << notes;
+  const auto s = make_sampler(f, data);
+  for (const double theta : {20., 55., 80.}) {
+    const auto wo = wo_at(theta, theta);
+    const Bins bins = equal_mass_bins(target_function(f), wo);
+    EXPECT_NEAR(double(s.exact.albedo(wo)) / bins.total, 1, 1e-4 + bins.worst_error) << theta;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Measures what was promised of the main job on every material, and prints a page of Markdown. Seeds are
 // fixed; --resume keeps each material's results in a folder, so that a run can be continued.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <iostream>
 
 #include "../threads.hpp"
+#include "anisotropic_page.hpp"
 #include "promises.hpp"
 #include "reflectree/formats/file.hpp"
 
@@ -29,7 +31,7 @@ int run(int argc, char** argv) {
   CLI::App app{"The main job, measured on every material"};
   const char* folder = std::getenv("REFLECTREE_DATA");
   std::string data = folder ? folder : "", only, markdown, json, resume;
-  bool reduced = false, list = false, untimed = false, rebuild = false;
+  bool reduced = false, list = false, untimed = false, rebuild = false, kept_only = false;
   int threads = 2;
   StudyOptions options;
   app.add_option("--data", data, "folder of the measured materials (default: REFLECTREE_DATA)");
@@ -42,15 +44,25 @@ int run(int argc, char** argv) {
   app.add_option("--overshoot-trials", options.overshoot_trials, "per material");
   app.add_option("--albedo-directions", options.albedo_directions, "random theta_o, per material");
   app.add_option("--albedo-trials", options.albedo_trials, "per material");
+  app.add_flag("--anisotropic", options.anisotropic, "anisotropic materials, each at 30 random viewers");
   app.add_flag("--reduced", reduced, "a dozen models, fewer samples: a few minutes");
   app.add_flag("--untimed", untimed, "do not judge build times (other work is running)");
   app.add_flag("--rebuild", rebuild,
                "with --resume: time the builds of kept materials anew, on a quiet machine");
+  app.add_flag("--kept", kept_only, "with --resume: print what is kept, measure nothing new");
   app.add_flag("--list", list, "list the materials");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (options.anisotropic) {
+    options.angles_deg = {89};
+    options.random_angles = 30;
+    options.albedo_directions = 60;
+    options.albedo_trials = 1'000'000;
+    options.overshoot_trials = std::min<std::uint64_t>(options.overshoot_trials, 10'000'000);
+    options.probed_wo = 2000;
   }
   if (reduced) {
     options.samples = 200'000;
@@ -63,7 +75,7 @@ int run(int argc, char** argv) {
   if (data.empty() && !reduced) {
     std::cerr << "no measured materials: neither --data nor REFLECTREE_DATA names their folder\n";
   }
-  const auto materials = study_materials(data, reduced);
+  const auto materials = options.anisotropic ? anisotropic_materials(data) : study_materials(data, reduced);
   // The level of a test is that of the whole list, whichever part of it is run.
   options.tests = int(materials.size()) * tests_of_material(options);
   const Host host = host_with_threads(threads);
@@ -85,6 +97,10 @@ int run(int argc, char** argv) {
       }
       continue;
     }
+    if (kept_only) {
+      std::fprintf(stderr, "%s: not measured\n", material.name.c_str());
+      continue;
+    }
     const Measurement m = measure(material, load(material, data), options, host);
     int failed = 0;
     for (const Verdict& v : m.verdicts) {
@@ -104,8 +120,18 @@ int run(int argc, char** argv) {
     all.push_back(m);
   }
   if (list) return 0;
-  const auto promises = judge(all, options, !untimed);
   std::string command = "study_main_job";
+  if (options.anisotropic) {
+    const std::string page = anisotropic_page(all, options, command + " --anisotropic");
+    std::cout << page;
+    if (!markdown.empty()) write_file_atomically(markdown, page);
+    if (!json.empty()) write_file_atomically(json, nlohmann::json(all).dump(1));
+    return !all.empty() && std::all_of(all.begin(), all.end(),
+                                       [&](const Measurement& m) { return misses_of(m, options).empty(); })
+               ? 0
+               : 1;
+  }
+  const auto promises = judge(all, options, !untimed);
   if (reduced) command += " --reduced";
   if (!only.empty()) command += " --only '" + only + "'";
   const std::string page = to_markdown(all, promises, options, command);

@@ -2,10 +2,13 @@
 #include "material_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "reflectree/brdf/material/material.hpp"
+#include "reflectree/error.hpp"
 #include "reflectree/formats/material_file.hpp"
+#include "reflectree/formats/rgl_fit.hpp"
 
 namespace reflectree::study {
 
@@ -72,7 +75,7 @@ constexpr const char* fits[] = {
 }  // namespace
 
 const char* name_of(Group group) {
-  constexpr const char* names[] = {"model", "rgl", "network", "fit"};
+  constexpr const char* names[] = {"model", "rgl", "network", "fit", "baked rgl", "zemax", "klems"};
   return names[int(group)];
 }
 
@@ -97,8 +100,82 @@ std::vector<StudyMaterial> study_materials(const std::string& data_folder, bool 
   return list;
 }
 
+namespace {
+
+constexpr const char* anisotropic_models[] = {
+    "ggx:alpha_x=0.05,alpha_y=0.3",
+    "ggx:alpha_x=0.02,alpha_y=0.6",
+    "ward:alpha_x=0.1,alpha_y=0.4",
+    "cook_torrance:kd=0,ks=1,alpha_x=0.1,alpha_y=0.3",
+    "ashikhmin_shirley:n_x=10,n_y=1000",
+    // A woven cloth: warp and weft.
+    "0.2*lambert:rho=0.4/0.1/0.1 + 0.5*ggx:alpha_x=0.1,alpha_y=0.4,phi_deg=20 + "
+    "0.3*ggx:alpha_x=0.1,alpha_y=0.4,phi_deg=110",
+    "0.5*plastic:alpha=0.2 + 0.5*ggx:alpha_x=0.1,alpha_y=0.4",
+    no_symmetry,
+};
+constexpr const char* baked_models[] = {"ggx:alpha_x=0.05,alpha_y=0.3", "ward:alpha_x=0.1,alpha_y=0.4",
+                                        no_symmetry};
+
+// Two lobes that are turned against each other, and a lopsided one: nothing to fold.
+Rgb without_symmetry(Direction wo, Direction wi) {
+  const Direction h = normalize(wo + wi);
+  const auto lobe = [&](float phi, float ax, float ay) {
+    const float c = std::cos(phi), s = std::sin(phi), x = (c * h.x + s * h.y) / ax,
+                y = (c * h.y - s * h.x) / ay;
+    return std::exp(-(x * x + y * y) / (h.z * h.z));
+  };
+  const float ground = 0.1f + 0.05f * wi.x;
+  return ground * Rgb{1, 0.7f, 0.4f} + 0.5f * lobe(0.4f, 0.15f, 0.5f) * Rgb{1, 1, 1} +
+         0.3f * lobe(1.5f, 0.4f, 0.2f) * Rgb{0.4f, 0.6f, 1};
+}
+
+AnyBrdf brdf_of(const std::string& text) {
+  if (text == no_symmetry) return AnyBrdf(without_symmetry);
+  return make_brdf(parse_material(text));
+}
+
+std::vector<std::string> files_in(const std::string& folder, const char* extension) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == extension) files.push_back(entry.path().stem().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::vector<StudyMaterial> anisotropic_materials(const std::string& data_folder) {
+  std::vector<StudyMaterial> list;
+  for (const char* text : anisotropic_models) list.push_back({text, Group::model, text, "", ""});
+  for (const std::string text : baked_models)
+    list.push_back({"RGL of " + text, Group::baked_rgl, text, "", ""});
+  if (data_folder.empty()) return list;
+  for (const std::string& f : files_in(data_folder + "/zemax", ".bsdf")) {
+    const std::string file = "zemax/" + f + ".bsdf";
+    try {
+      if (!load_brdf(data_folder + "/" + file).traits().isotropic)
+        list.push_back({f, Group::zemax, "", file, ""});
+    } catch (const Error&) {  // transmission
+    }
+  }
+  for (const std::string& f : files_in(data_folder + "/radiance_xml", ".xml")) {
+    const std::string file = "radiance_xml/" + f + ".xml";
+    try {
+      for (const std::string& m : list_members(data_folder + "/" + file)) {
+        if (m == "front" || m == "back") list.push_back({f + " " + m, Group::klems, "", file, m});
+      }
+    } catch (const Error&) {  // tensor trees
+    }
+  }
+  return list;
+}
+
 AnyBrdf load(const StudyMaterial& material, const std::string& data_folder) {
-  if (!material.text.empty()) return make_brdf(parse_material(material.text));
+  if (material.group == Group::baked_rgl)
+    return read_brdf(write_rgl(fit_rgl(brdf_of(material.text)), material.name), material.name + ".bsdf");
+  if (!material.text.empty()) return brdf_of(material.text);
   return load_brdf(data_folder + "/" + material.file, material.member);
 }
 

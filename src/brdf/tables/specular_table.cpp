@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/brdf/tables/specular_table.hpp"
 
-#include "reflectree/brdf/tables/between_nodes.hpp"
-#include "reflectree/math/fast_functions.hpp"
+#include <algorithm>
+
+#include "specular_albedo.hpp"
 
 namespace reflectree {
 namespace {
 
 using detail::between_nodes;
 using detail::BetweenNodes;
-
-// An angle, with as many turns added as bring it to the first node or beyond, by less than a turn.
-float wrapped(float angle, float first) {
-  const float turns = (angle - first) * (0.5f / pi);
-  return first + 2 * pi * (turns - std::floor(turns));
-}
+using detail::wrapped;
 
 // The sixteen entries around a pair.
 struct Corners {
@@ -28,10 +24,7 @@ Corners corners(const SpecularAxes& axes, const ShadingGeometry<float>& g) {
   const float x = g.cos_theta_o * along + sin_o * g.wi.z, z = g.cos_theta_o * g.wi.z - sin_o * along;
   const float azimuth = angle_of(y, x);
   Corners c;
-  if (axes.rotation.size() > 1) {
-    c.rotation =
-        between_nodes(axes.rotation, wrapped(0.5f * pi - angle_of(sin_phi, cos_phi), axes.rotation.front()));
-  }
+  c.rotation = detail::rotation_of(axes, cos_phi, sin_phi);
   c.theta_o = between_nodes(axes.theta_o, polar_angle(sin2_theta(g.wo), g.cos_theta_o));
   c.azimuth =
       between_nodes(axes.azimuth, axes.mirrored ? abs(azimuth) : wrapped(azimuth, axes.azimuth.front()));
@@ -93,6 +86,11 @@ BrdfTraits SpecularTable<Value>::traits() const {
     AzimuthKnots all{pi / 2, {}};
     for (const float rotation : axes.rotation) all.phi_o.push_back(pi / 2 - rotation);
     traits.phi_o_knots.push_back(std::move(all));
+    // Where entries are not negative f is nowhere cut, and its integral is linear in them.
+    if constexpr (std::is_same_v<Value, float>) {
+      if (std::none_of(values.begin(), values.end(), [](float v) { return v < 0; }))
+        traits.albedo = detail::specular_albedo(axes, values);
+    }
   }
   return traits;
 }

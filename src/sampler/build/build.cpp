@@ -206,11 +206,16 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
     state_misses(attempt.seen, attempt.albedo);
     const bool spent = effort.spent();
     effort.limit = options.max_evaluations;
+    // The attack on many slabs may take more than its share.
+    const bool crowded = !seen.frame.isotropic();
+    if (crowded) effort.limit = std::max(effort.limit, effort.evaluations + options.max_evaluations / 8);
     const Survey survey{field, attempt.albedo, host, effort, &attempt.jumps};
     attempt.one_shot = build_one_shot(survey, options);
-    // Bounds are a density, too: where the effort did not reach for a better one, they serve.
-    if (effort.spent() && worst_variance(attempt.one_shot) > options.expected_trials - 1)
-      attempt.one_shot = attempt.exact;
+    // Bounds are a density, too, whose weights vary by less than the trials beyond the first: where the effort
+    // did not reach for a better one, they serve.
+    const bool poor = crowded ? double(median_variance(attempt.one_shot)) > median_trials(attempt.exact) - 1
+                              : worst_variance(attempt.one_shot) > options.expected_trials - 1;
+    if (effort.spent() && poor) attempt.one_shot = attempt.exact;
     // A lobe that its trees stepped over costs variance, not truth: it is followed, or told of.
     Effort uncounted;
     const Survey apart{field, attempt.albedo, host, uncounted, &attempt.jumps};
@@ -234,7 +239,7 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
     data.report.one_shot_variance = median_variance(attempt.one_shot);
     data.report.evaluations = evaluations + effort.evaluations;
     data.report.notes = notes_on(attempt.exact, attempt.one_shot, attempt.albedo, density, subject.parameters,
-                                 options, spent || effort.spent());
+                                 options, double(data.report.overshoot_mass), spent || effort.spent());
     break;
   }
   data.probes =

@@ -156,7 +156,7 @@ bool much_more(double variance, const BuildOptions& options) {
 std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
                                   const AlbedoTable& albedo, const DensityJudgement& density,
                                   const std::vector<KnownParameter>& parameters, const BuildOptions& options,
-                                  bool spent) {
+                                  double overshoot, bool spent) {
   std::vector<std::string> notes;
   const bool black = std::all_of(albedo.albedo.begin(), albedo.albedo.end(), [](float a) { return a == 0; });
   if (black) notes.push_back("the function is 0 wherever it was looked at: there is no sample for any wo");
@@ -167,6 +167,13 @@ std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vec
   if (dear && trials > 1.0002 * double(options.expected_trials)) {
     notes.push_back(text("exact mode takes %.3g trials on average at %s, where %.3g were asked for; ", trials,
                          range_of(*dear, parameters).c_str(), double(options.expected_trials)) +
+                    end);
+  }
+  const bool anisotropic = exact.front().box.axes > 1 && exact.front().box.slot[1] == 1;
+  if ((spent || anisotropic) && overshoot > 1e-6) {
+    notes.push_back(text("bounds of exact mode miss %.2g of the function in the worst slab, as their attack "
+                         "estimates it, and bend its density by as much; one-shot mode is unbiased; ",
+                         overshoot) +
                     end);
   }
   // As the trees have it, or as draws from the exact ones show it.

@@ -27,6 +27,6 @@ void refuse_hopeless(const std::vector<Slab>& exact, const Field& field, bool sp
 std::vector<std::string> notes_on(const std::vector<Slab>& exact, const std::vector<Slab>& one_shot,
                                   const AlbedoTable& albedo, const DensityJudgement& density,
                                   const std::vector<KnownParameter>& parameters, const BuildOptions& options,
-                                  bool spent);
+                                  double overshoot, bool spent);
 
 }  // namespace reflectree::detail

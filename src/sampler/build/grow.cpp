@@ -186,10 +186,10 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   // With n known and two unknown coordinates equal shares are the optimum: n / (n + 2) of the trials left.
   constexpr float dearer[known_slots] = {1, 1.5f, 1.8f, 2};
   if (!state.active) return {};
-  const float budget = rules.goal - 1;
+  const float goal = rules.goal_of(slab), budget = goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
   const bool nothing = cost <= 1.001f * floor_share;  // f is 0 in the slab
-  const bool fits = nothing || cost <= rules.goal * ideal;
+  const bool fits = nothing || cost <= goal * ideal;
   // A stated error is far above the true one: a large one must not hide a lobe that no grid has seen.
   const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * min(albedo_error, 0.01f);
   std::vector<std::uint32_t> blind;
@@ -213,7 +213,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   if (met || state.leaves >= rules.max_leaves) return {};
   if (!blind.empty()) return {-1, blind};
   const float fair = 1.5f * budget * ideal / float(state.leaves);  // equal shares are the optimum
-  return {-1, dearest_leaves(slab, rules, cost - rules.goal * ideal, fair)};
+  return {-1, dearest_leaves(slab, rules, cost - goal * ideal, fair)};
 }
 
 // Replaces each halved slab by two fresh ones; the tasks already gathered move with their slabs.
@@ -250,6 +250,22 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
   states = std::move(next_states);
 }
 
+// How many leaves every slab that asks for more can have, of so many to come.
+float level_of(const std::vector<SlabState>& states, double leaves) {
+  std::vector<double> has;
+  for (const SlabState& state : states) {
+    if (state.active) has.push_back(double(state.leaves));
+  }
+  std::sort(has.begin(), has.end());
+  double level = 0, slabs = 0;  // of those below the level
+  for (const double own : has) {
+    if (slabs > 0 && leaves < slabs * (own - level)) break;
+    leaves -= slabs * (own - level);
+    level = own, ++slabs;
+  }
+  return float(slabs > 0 ? level + std::max(leaves, 0.) / slabs : 0);
+}
+
 }  // namespace
 
 void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rules) {
@@ -260,6 +276,8 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
     if (slabs[s].nodes.size() == 1 && slabs[s].nodes[0].leaf.cost == 0) tasks.push_back({s, 0});
     states[s].leaves = leaves_in_order(slabs[s]).size();
   }
+  const std::uint64_t start = survey.effort.evaluations, limit = survey.effort.limit;
+  const double left = double(limit) - double(std::min(start, limit));
   int round = 0;
   for (bool busy = true; busy;) {
     // How many rounds there will be, nobody knows: each brings the bar closer to the end of its stage.
@@ -268,22 +286,31 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
     evaluate(slabs, tasks, survey, rules);
     tasks.clear();
     busy = false;
-    if (survey.effort.spent()) return;
+    const auto used = double(survey.effort.evaluations - start);
+    if (survey.effort.spent() || used >= double(rules.effort_share) * left) return;
     std::vector<Halved> halved;
     // Halved slabs begin again: what is left in the end belongs to their leaves.
-    const bool may_halve =
-        rules.split_slabs && double(survey.effort.evaluations) < 0.7 * double(survey.effort.limit);
+    bool may_halve = rules.split_slabs;
+    float level = 1e30f;
+    if (rules.leaves_kept == 0) {
+      may_halve = may_halve && double(survey.effort.evaluations) < 0.7 * double(survey.effort.limit);
+    } else {
+      const auto leaf = double(2 * slabs.front().views.size() * grid_points);
+      level = level_of(states, (double(rules.effort_share) * left - used) / leaf);
+      may_halve = may_halve && level > float(rules.leaves_kept);
+    }
     for (std::uint32_t s = 0; s < slabs.size(); ++s) {
-      const Step step = next_step(slabs[s], states[s], rules, may_halve, survey.albedo.relative_error);
+      Step step = next_step(slabs[s], states[s], rules, may_halve, survey.albedo.relative_error);
       if (step.halve >= 0) halved.push_back({s, step.halve});
+      states[s].active = step.halve >= 0 || !step.split.empty();
+      if (float(states[s].leaves) >= level) step.split.clear();  // what is left belongs to others
       for (const std::uint32_t i : step.split) {
         split_leaf(slabs[s], i, survey.field.domain);
         const std::uint32_t child = slabs[s].nodes[i].child;
         tasks.push_back({s, child}), tasks.push_back({s, child + 1});
       }
       states[s].leaves += step.split.size();
-      states[s].active = step.halve >= 0 || !step.split.empty();
-      busy = busy || states[s].active;
+      busy = busy || step.halve >= 0 || !step.split.empty();
     }
     if (!halved.empty()) halve(slabs, states, tasks, halved, survey);
   }

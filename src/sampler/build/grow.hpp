@@ -13,6 +13,9 @@
 
 namespace reflectree::detail {
 
+// Beyond 80 degrees.
+inline bool is_grazing(const Slab& slab) { return slab.box.lo[0] >= 80 * pi / 180; }
+
 struct GrowthRules {
   float goal;         // sum(cost) / sum(ideal)
   float known_share;  // a slab that narrower ones would save more than this share of (goal - 1) is halved
@@ -24,6 +27,14 @@ struct GrowthRules {
   // lobe runs between the points of its grids, and the coarsest leaves are halved until it is met.
   float mass_error = 0.004f;
   float progress = 0, progress_end = 0;  // of the host's bar, where this growth begins and ends
+  // Of the effort that is left, what this growth may take.
+  float effort_share = 1;
+  // No slab is halved where that would leave less effort than so many leaves for every slab that asks for
+  // more; and none grows beyond what that effort allows for each. 0: whoever comes first.
+  std::size_t leaves_kept = 0;
+  float grazing_goal = 0;  // of grazing slabs; 0: the same
+
+  float goal_of(const Slab& slab) const { return grazing_goal > 0 && is_grazing(slab) ? grazing_goal : goal; }
 };
 
 // Grows until every slab meets the goal, or the effort is spent; a halved slab's halves take its place.

@@ -17,5 +17,7 @@ std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& optio
 // Relative, of one-shot weights.
 float median_variance(const std::vector<Slab>& slabs);
 double worst_variance(const std::vector<Slab>& slabs);
+// Of exact trees.
+double median_trials(const std::vector<Slab>& slabs);
 
 }  // namespace reflectree::detail

@@ -266,8 +266,10 @@ void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, cons
 void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey) {
   const Field& field = survey.field;
   constexpr double doubtful = 1.5;  // more than the scatter of honest leaves
-  const auto count = [](const Slab& slab, std::uint32_t i) {
-    return std::size_t(64 + 8192 * area_share(slab.nodes[i].leaf.cell));
+  // Twice as many where slabs spread over two angles of wo.
+  const std::size_t times = field.frame.isotropic() ? 1 : 2;
+  const auto count = [times](const Slab& slab, std::uint32_t i) {
+    return times * std::size_t(64 + 8192 * area_share(slab.nodes[i].leaf.cell));
   };
   const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
                          const std::vector<float>& ratios) {

@@ -120,7 +120,8 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& 
     if (!witnesses) witnesses.emplace(field, double(table.relative_error), seed, host, effort.limit);
     return witnesses->miss_of(table);
   };
-  const auto spent = [&] { return effort.evaluations - start > budget; };
+  // Rows that do not foretell each other are worth more than that: without them exact mode is off everywhere.
+  const auto spent = [&] { return effort.evaluations - start > effort.limit / 2; };
   return albedo_over_azimuth(field.frame.symmetry, borders, relative_error, row_at, miss_of, spent);
 }
 
