@@ -47,12 +47,13 @@ class EvalAlone(mi.BSDF):
         mi.BSDF.__init__(self, props)
         self.m_components = [mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide]
         self.m_flags = self.m_components[0]
+        self.color = mi.Color3f(1, 0.7, 0.4)  # of the variant that loads it
 
     def eval(self, ctx, si, wo, active=True):
         active &= (si.wi.z > 0) & (wo.z > 0)
         half = dr.normalize(si.wi + wo)
         value = 0.1 / (si.wi.z + wo.z) + 2 * dr.power(dr.maximum(half.z, 0), 60)
-        return mi.Color3f(1, 0.7, 0.4) * value * wo.z & active
+        return self.color * dr.select(active, value * wo.z, 0)
 
 
 mi.register_bsdf("eval_alone", lambda props: EvalAlone(props))
