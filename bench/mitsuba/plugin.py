@@ -41,7 +41,7 @@ RGL = [path for path in sorted(glob.glob(os.path.join(os.environ.get("REFLECTREE
 
 
 class EvalAlone(mi.BSDF):
-    """Somebody's own: Lommel and Seeliger's dust, with a haze about the mirror direction; eval and nothing else."""
+    """Somebody's own: Lommel and Seeliger's dust, with a haze about the mirror direction; no sample and no pdf."""
 
     def __init__(self, props):
         mi.BSDF.__init__(self, props)
@@ -54,6 +54,9 @@ class EvalAlone(mi.BSDF):
         half = dr.normalize(si.wi + wo)
         value = 0.1 / (si.wi.z + wo.z) + 2 * dr.power(dr.maximum(half.z, 0), 60)
         return self.color * dr.select(active, value * wo.z, 0)
+
+    def to_string(self):  # the native plug-in asks for it
+        return "EvalAlone[]"
 
 
 mi.register_bsdf("eval_alone", lambda props: EvalAlone(props))
