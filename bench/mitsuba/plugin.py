@@ -218,7 +218,7 @@ def scalar_faults():
 def scalar_chi2():
     """Nested BSDFs that are isotropic, since the build calls them one by one; anisotropic ones by our materials."""
     isotropic = {k: ours(v) for k, v in {**MATERIALS, **NARROW, **MEASURED}.items() if "×" not in k and "aniso" not in k}
-    materials = {**isotropic, **{f"material {m}{mode and ', exact'}": {"type": "reflectree", "material": m, **mode}
+    materials = {**isotropic, **{f"material {m}{', exact' if mode else ''}": {"type": "reflectree", "material": m, **mode}
                                  for m in ("ggx:alpha_x=0.25,alpha_y=0.5", "plastic:alpha=0.3")
                                  for mode in ({}, {"mode": "exact"})}}
     print()
