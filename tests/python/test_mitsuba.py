@@ -126,14 +126,10 @@ def test_twin_with_a_planted_fault(llvm, cache, fault, monkeypatch):
     assert not chi2({"type": "reflectree", "nested": PRINCIPLED, "cache": cache}, 50)
 
 
-@needs_llvm
-@pytest.mark.parametrize("name", ["llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral"])
-def test_values_densities_and_weights_agree(cache, name):
-    variant(name)
-    nested = mi.load_dict(PRINCIPLED)
-    bsdf = mi.load_dict({"type": "reflectree", "nested": PRINCIPLED, "cache": cache})
-    n, context = 20000, mi.BSDFContext()
-    si, u1, u2 = interactions(n)
+def drawn_in_agreement(bsdf, nested, si, u1, u2):
+    """bsdf.sample and the density of its directions: values, density and weight must be those of eval_pdf, and values
+    those of the nested BSDF."""
+    context = mi.BSDFContext()
     if mi.is_spectral:
         si.wavelengths = type(si.wavelengths)([450, 520, 590, 660])
     drawn, weight = bsdf.sample(context, si, u1, u2)
@@ -142,6 +138,18 @@ def test_values_densities_and_weights_agree(cache, name):
     assert np.quantile(np.abs(np.array(pdf / drawn.pdf) - 1), 0.99) < 1e-3
     assert dr.allclose(values, nested.eval(context, si, drawn.wo))
     assert dr.allclose(weight * drawn.pdf, values, rtol=1e-4, atol=1e-6)
+    return drawn, weight, pdf
+
+
+@needs_llvm
+@pytest.mark.parametrize("name", ["llvm_ad_rgb", "llvm_ad_mono", "llvm_ad_spectral"])
+def test_values_densities_and_weights_agree(cache, name):
+    variant(name)
+    nested = mi.load_dict(PRINCIPLED)
+    bsdf = mi.load_dict({"type": "reflectree", "nested": PRINCIPLED, "cache": cache})
+    n, context = 20000, mi.BSDFContext()
+    si, u1, u2 = interactions(n)
+    drawn, weight, _ = drawn_in_agreement(bsdf, nested, si, u1, u2)
     weight = np.array(weight).reshape(-1, n)
     assert np.all(weight.std(axis=1) < 0.2 * weight.mean(axis=1) + 0.2)
     down = mi.Vector3f(drawn.wo.x, drawn.wo.y, -drawn.wo.z)
@@ -373,14 +381,7 @@ def test_values_densities_and_weights_of_members_agree(cache, bitmap, name):
     nested, bsdf, context, n = mi.load_dict(rough(bitmap)), mi.load_dict(textured(bitmap, cache)), mi.BSDFContext(), 20000
     si, u1, u2 = interactions(n)
     si.uv = mi.Point2f(mi.Float(np.random.default_rng(5).random(n, dtype=np.float32)), 0.3)
-    if mi.is_spectral:
-        si.wavelengths = type(si.wavelengths)([450, 520, 590, 660])
-    drawn, weight = bsdf.sample(context, si, u1, u2)
-    values, pdf = bsdf.eval_pdf(context, si, drawn.wo)
-    assert dr.all(drawn.pdf > 0)
-    assert np.quantile(np.abs(np.array(pdf / drawn.pdf) - 1), 0.99) < 1e-3
-    assert dr.allclose(values, nested.eval(context, si, drawn.wo))  # the nested BSDF's own texture is as it was
-    assert dr.allclose(weight * drawn.pdf, values, rtol=1e-4, atol=1e-6)
+    drawn, _, pdf = drawn_in_agreement(bsdf, nested, si, u1, u2)
     alpha = value_at(np.array(si.uv.x))
     wo, wi = (np.stack([np.array(w[k]) for k in range(3)], axis=1) for w in (si.wi, drawn.wo))
     expected = bsdf.sampler.pdf(wo, wi, mode="one-shot", alpha=alpha)
