@@ -19,6 +19,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "random_words.hpp"
+
 NAMESPACE_BEGIN(mitsuba)
 
 // As the wheel has them: registers of four floats.
@@ -64,19 +66,6 @@ OwnedSampler load(const std::string &path, const reflectree_function *f) {
     check(reflectree_load(path.c_str(), f, nullptr, &s));
     return OwnedSampler(s);
 }
-
-// Random words from the bits of three random numbers, whose lowest bits are few: SplitMix64 (Steele, Lea and Flood
-// 2014) mixes every bit into every other.
-struct WordsOfNumbers {
-    uint64_t state;
-    WordsOfNumbers(uint32_t a, uint32_t b, uint32_t c) : state(mix(a | uint64_t(b) << 32) + c * 0x9e3779b97f4a7c15u) {}
-    static uint64_t mix(uint64_t z) {
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
-    uint32_t next() { return uint32_t(mix(state += 0x9e3779b97f4a7c15u) >> 32); }
-};
 
 // 64 bits of a text (FNV-1a), as hexadecimal digits.
 std::string digest(const std::string &text) {
@@ -172,11 +161,11 @@ public:
             const double u[2] = { double(sample2.x()) + double(sample1) * 0x1p-24, double(sample2.y()) };
             check(reflectree_sample_uniforms(m_sampler.get(), 1, known, u, wi, &pdf, nullptr));
         } else {
-            WordsOfNumbers bits(bits_of(sample1), bits_of(sample2.x()), bits_of(sample2.y()));
+            reflectree::WordsOfNumbers bits(bits_of(sample1), bits_of(sample2.x()), bits_of(sample2.y()));
             auto *draw = m_exact ? reflectree_sample_exact : reflectree_sample_one_shot;
             check(draw(m_sampler.get(), 1, known,
-                       [](void *state) { return static_cast<WordsOfNumbers *>(state)->next(); }, &bits, wi, &pdf,
-                       nullptr));
+                       [](void *state) { return (*static_cast<reflectree::WordsOfNumbers *>(state))(); }, &bits, wi,
+                       &pdf, nullptr));
         }
         if (!(pdf > 0))
             return { drawn, Spectrum(0.f) };

@@ -36,7 +36,8 @@ int main(int argc, char** argv) {
   reflectree_function* f;
   reflectree_sampler* s;
   reflectree_pcg32 random;
-  must(reflectree_function_callback("dust", 3, REFLECTREE_CONCURRENT | REFLECTREE_ISOTROPIC, dust, tint, NULL, &f));
+  must(reflectree_function_callback("dust", 3, REFLECTREE_CONCURRENT | REFLECTREE_ISOTROPIC, dust, tint, NULL,
+                                    &f));
   must(reflectree_build(f, NULL, &s));
   reflectree_pcg32_seed(&random, 1, 0);
   for (int p = 0; p < size * size; ++p) { /* rows from below; the viewer is far away along z */
