@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// The warp chain of Dupuy and Jakob 2018 beside our one-shot mode on the same RGL files: the chain that is fitted
+// from f, the peer of `compare`, and, where its source was given (-DPOWITACQ=FOLDER, github.com/rgl-epfl/brdf-loader),
+// the tables of the file itself, as their authors' loader draws from them. Prints Markdown.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+
+#include "reflectree/formats/material_file.hpp"
+#include "reflectree/peers/registry.hpp"
+#include "reflectree/sampler/sampler.hpp"
+#include "reflectree/study/thread_time.hpp"
+#include "study_program.hpp"
+
+#ifdef REFLECTREE_POWITACQ
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#define POWITACQ_IMPLEMENTATION 1
+#include <powitacq_rgb.h>
+#pragma GCC diagnostic pop
+#endif
+
+namespace {
+
+using namespace reflectree;
+
+constexpr double degs[] = {10, 45, 75, 85};
+constexpr int azimuths = 16, samples = 20'000, turns = 5;
+constexpr double round_seconds = 2e-3;
+
+struct Drawn {
+  float weight[3];
+};
+using Draw = std::function<Drawn(Direction wo, UniformBits& u)>;
+struct Way {
+  const char* name;
+  double kib, build_seconds;
+  Draw draw;
+};
+
+Way way_of(const char* name, const PeerSubject& subject, double seconds) {
+  const double start = study::thread_seconds();
+  const auto sampler = std::make_shared<const AnySampler<Spectrum>>(*find_sampler(name)->make(subject, {}));
+  return {name, double(sampler->bytes()) / 1024, seconds + study::thread_seconds() - start,
+          [sampler](Direction wo, UniformBits& u) {
+            const auto s = sampler->sample(wo, u);
+            Drawn d{};
+            for (int c = 0; s && c < std::min(3, s->weight.channels()); ++c) d.weight[c] = s->weight[c];
+            return d;
+          }};
+}
+
+#ifdef REFLECTREE_POWITACQ
+Way loader(const std::string& path) {
+  const double start = study::thread_seconds();
+  const auto brdf = std::make_shared<const powitacq_rgb::BRDF>(path);
+  return {"the file's own, by its authors' loader", 0, study::thread_seconds() - start,
+          [brdf](Direction wo, UniformBits& u) {
+            const powitacq_rgb::Vector2f points(to_unit_float(u()), to_unit_float(u()));
+            powitacq_rgb::Vector3f wi;
+            float pdf = 0;
+            const auto w = brdf->sample(points, {wo.x, wo.y, wo.z}, &wi, &pdf);
+            return Drawn{{w[0], w[1], w[2]}};
+          }};
+}
+#endif
+
+Direction viewer(double deg, double turn) {
+  return direction_from_angles(float(deg * pi_v<double> / 180), float(2 * pi_v<double> * turn));
+}
+
+// Of the weight, relative, its channels together: the mean over viewers all around.
+double variance_at(const Way& way, double deg) {
+  UniformBits u{Pcg32(3)};
+  double mean_variance = 0;
+  for (int a = 0; a < azimuths; ++a) {
+    double sum[3] = {}, square = 0;
+    for (int i = 0; i < samples; ++i) {
+      const Drawn d = way.draw(viewer(deg, (a + 0.37) / azimuths), u);
+      for (int c = 0; c < 3; ++c) {
+        sum[c] += double(d.weight[c]) / samples;
+        square += double(d.weight[c]) * double(d.weight[c]) / samples;
+      }
+    }
+    mean_variance += (square / (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) - 1) / azimuths;
+  }
+  return mean_variance;
+}
+
+// Nanoseconds per sample, viewers all around: of every way in turn, medians over the turns.
+std::vector<double> times_at(const std::vector<Way>& ways, double deg) {
+  UniformBits u{Pcg32(7)};
+  std::vector<Direction> wo(512);
+  for (Direction& w : wo) w = viewer(deg, to_unit_double(u()));
+  std::vector<std::vector<double>> all(ways.size());
+  double used = 0;
+  for (int turn = 0; turn < turns; ++turn) {
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      all[k].push_back(1e9 * study::median_seconds(round_seconds, [&](std::size_t i) {
+                         used += double(ways[k].draw(wo[i % wo.size()], u).weight[0]);
+                       }));
+    }
+  }
+  volatile double kept = used;
+  (void)kept;
+  std::vector<double> medians;
+  for (auto& t : all) {
+    std::nth_element(t.begin(), t.begin() + turns / 2, t.end());
+    medians.push_back(t[turns / 2]);
+  }
+  return medians;
+}
+
+void show(const std::string& path) {
+  const AnyBrdf f = load_brdf(path);
+  PeerSubject subject{f, {}, {}, nullptr};
+  const double start = study::thread_seconds();
+  subject.packed = std::make_shared<const PackedSampler>(pack(build(f)));
+  const double ours = study::thread_seconds() - start;
+  std::vector<Way> ways{way_of("one-shot", subject, ours), way_of("exact", subject, ours),
+                        way_of("warp-chain", subject, 0)};
+#ifdef REFLECTREE_POWITACQ
+  ways.push_back(loader(path));
+#endif
+  std::vector<std::vector<double>> times;
+  for (const double deg : degs) times.push_back(times_at(ways, deg));
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    std::printf("| %s | %s | %.0f | %.1f |", k == 0 ? path.c_str() : "", ways[k].name, ways[k].kib,
+                ways[k].build_seconds);
+    for (std::size_t i = 0; i < std::size(degs); ++i)
+      std::printf(" %.0f (%.2f) |", times[i][k], times[i][k] / times[i][0]);
+    for (const double deg : degs) std::printf(" %.4f |", variance_at(ways[k], deg));
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("The warp chain beside our samplers on RGL files, as Markdown.");
+  std::vector<std::string> files;
+  app.add_option("FILE", files, "RGL .bsdf files")->required();
+  return study::run_program(app, argc, argv, [&] {
+    std::printf("| file | sampler | KiB | build s |");
+    for (const double deg : degs) std::printf(" ns at %g° |", deg);
+    for (const double deg : degs) std::printf(" variance at %g° |", deg);
+    std::printf("\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+    for (const std::string& file : files) show(file);
+    return 0;
+  });
+}
