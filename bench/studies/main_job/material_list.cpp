@@ -2,13 +2,13 @@
 #include "material_list.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/rgl_fit.hpp"
+#include "without_symmetry.hpp"
 
 namespace reflectree::study {
 
@@ -116,19 +116,6 @@ constexpr const char* anisotropic_models[] = {
 };
 constexpr const char* baked_models[] = {"ggx:alpha_x=0.05,alpha_y=0.3", "ward:alpha_x=0.1,alpha_y=0.4",
                                         no_symmetry};
-
-// Two lobes that are turned against each other, and a lopsided one: nothing to fold.
-Rgb without_symmetry(Direction wo, Direction wi) {
-  const Direction h = normalize(wo + wi);
-  const auto lobe = [&](float phi, float ax, float ay) {
-    const float c = std::cos(phi), s = std::sin(phi), x = (c * h.x + s * h.y) / ax,
-                y = (c * h.y - s * h.x) / ay;
-    return std::exp(-(x * x + y * y) / (h.z * h.z));
-  };
-  const float ground = 0.1f + 0.05f * wi.x;
-  return ground * Rgb{1, 0.7f, 0.4f} + 0.5f * lobe(0.4f, 0.15f, 0.5f) * Rgb{1, 1, 1} +
-         0.3f * lobe(1.5f, 0.4f, 0.2f) * Rgb{0.4f, 0.6f, 1};
-}
 
 AnyBrdf brdf_of(const std::string& text) {
   if (text == no_symmetry) return AnyBrdf(without_symmetry);
