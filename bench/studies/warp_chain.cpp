@@ -9,8 +9,9 @@
 #include <functional>
 #include <memory>
 
+#include "reflectree/brdf/material/material.hpp"
+#include "reflectree/brdf/tables/rgl_wide_table.hpp"
 #include "reflectree/formats/file.hpp"
-#include "reflectree/formats/material_file.hpp"
 #include "reflectree/formats/rgl_fit.hpp"
 #include "reflectree/peers/registry.hpp"
 #include "reflectree/sampler/sampler.hpp"
@@ -45,15 +46,23 @@ struct Way {
   Draw draw;
 };
 
-Way way_of(const char* name, const PeerSubject& subject, double seconds) {
+// Compiled for the type of its function, as the authors' loader is.
+template <class Sampler>
+Way ours(const char* name, const Sampler& sampler, double seconds) {
+  return {name, double(bytes_of(sampler.packed())) / 1024, seconds, [sampler](Direction wo, UniformBits& u) {
+            const auto s = sampler.sample(wo, u);
+            return s ? Drawn{{s->weight[0], s->weight[1], s->weight[2]}} : Drawn{};
+          }};
+}
+
+Way warp_chain(const AnyBrdf& f) {
   const double start = study::thread_seconds();
-  const auto sampler = std::make_shared<const AnySampler<Spectrum>>(*find_sampler(name)->make(subject, {}));
-  return {name, double(sampler->bytes()) / 1024, seconds + study::thread_seconds() - start,
+  const auto sampler = std::make_shared<const AnySampler<Spectrum>>(
+      *find_sampler("warp-chain")->make({f, {}, {}, nullptr}, {}));
+  return {"warp-chain", double(sampler->bytes()) / 1024, study::thread_seconds() - start,
           [sampler](Direction wo, UniformBits& u) {
             const auto s = sampler->sample(wo, u);
-            Drawn d{};
-            for (int c = 0; s && c < std::min(3, s->weight.channels()); ++c) d.weight[c] = s->weight[c];
-            return d;
+            return s ? Drawn{{s->weight[0], s->weight[1], s->weight[2]}} : Drawn{};
           }};
 }
 
@@ -135,13 +144,13 @@ std::vector<double> times_at(const std::vector<Way>& ways, double deg) {
 
 void show(const std::string& text) {
   const AnyBrdf material = make_brdf(parse_material(text));
-  const AnyBrdf f = read_brdf(write_rgl(fit_rgl(material), text), text + ".bsdf");
-  PeerSubject subject{f, {}, {}, nullptr};
+  const RglWideTable f(fit_rgl(material).fields);
   const double start = study::thread_seconds();
-  subject.packed = std::make_shared<const PackedSampler>(pack(build(f)));
-  const double ours = study::thread_seconds() - start;
-  std::vector<Way> ways{way_of("one-shot", subject, ours), way_of("exact", subject, ours),
-                        way_of("warp-chain", subject, 0)};
+  const auto packed = std::make_shared<const PackedSampler>(pack(build(AnyBrdf(f))));
+  const double seconds = study::thread_seconds() - start;
+  std::vector<Way> ways{ours("one-shot", OneShotSampler<RglWideTable>(f, packed), seconds),
+                        ours("exact", ExactSampler<RglWideTable>(f, packed), seconds),
+                        warp_chain(AnyBrdf(f))};
 #ifdef REFLECTREE_POWITACQ
   ways.push_back(loader(material));
 #endif
