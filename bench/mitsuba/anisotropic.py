@@ -57,8 +57,8 @@ SCENE = """<scene version="3.0.0">
 
 
 def metal(distribution, alpha_u, alpha_v):
-    return (f'<bsdf type="roughconductor"><string name="material" value="Al"/><string name="distribution" value="{distribution}"/>'
-            f'<float name="alpha_u" value="{alpha_u}"/><float name="alpha_v" value="{alpha_v}"/></bsdf>')
+    return (f'<bsdf type="roughconductor"><string name="material" value="Al"/><string name="distribution" '
+            f'value="{distribution}"/><float name="alpha_u" value="{alpha_u}"/><float name="alpha_v" value="{alpha_v}"/></bsdf>')
 
 
 def table(path, member=""):
@@ -67,7 +67,8 @@ def table(path, member=""):
 
 def materials(program, data, folder, wanted):
     """{name: BSDF as XML}, with files that are baked here."""
-    found = {"roughconductor GGX 0.05 × 0.3": metal("ggx", 0.05, 0.3), "roughconductor Beckmann 0.1 × 0.3": metal("beckmann", 0.1, 0.3)}
+    found = {"roughconductor GGX 0.05 × 0.3": metal("ggx", 0.05, 0.3),
+             "roughconductor Beckmann 0.1 × 0.3": metal("beckmann", 0.1, 0.3)}
     for model in ("ggx:alpha_x=0.05,alpha_y=0.3", "ward:alpha_x=0.1,alpha_y=0.4"):
         path = folder / (model.partition(":")[0] + ".bsdf")
         if wanted in f"measured, baked from {model}":
@@ -79,7 +80,8 @@ def materials(program, data, folder, wanted):
     found["Zemax IMX455"] = table(data / "zemax" / "IMX455.bsdf")
     for path in sorted((data / "radiance_xml").glob("*.xml")):
         listed = subprocess.run([program, "list", path], capture_output=True, text=True).stderr
-        found.update({f"Klems {path.stem} {side}": table(path, side) for side in ("front", "back") if f"#{side}\n" in listed})
+        sides = [side for side in ("front", "back") if f"#{side}\n" in listed]
+        found.update({f"Klems {path.stem} {side}": table(path, side) for side in sides})
     return found
 
 
@@ -129,8 +131,8 @@ def main():
     program, good, sheet = o.reflectree.resolve(), True, []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        print("| material | mean, ours / Mitsuba's | mean of z² | largest abs(z) | variance, ours / Mitsuba's | twin, turned: mean of z² "
-              "| twin, brighter |")
+        print("| material | mean, ours / Mitsuba's | mean of z² | largest abs(z) | variance, ours / Mitsuba's "
+              "| twin, turned: mean of z² | twin, brighter |")
         print("|---|---:|---:|---:|---:|---:|---:|")
         for material, bsdf in materials(program, o.data and o.data.resolve(), folder, o.only).items():
             if o.only not in material:
@@ -146,7 +148,8 @@ def main():
             table_bsdf.TURN = TURN if "reflectree" in bsdf else 0
             turned = theirs(scene(0 if table_bsdf.TURN else TURN), o.spp)
             table_bsdf.TURN = 0
-            z, twins = scores(mine, own), [scores(mine, turned), scores(mine, (None, own[1] * BRIGHTER, own[2] * BRIGHTER**2))]
+            brighter = (None, own[1] * BRIGHTER, own[2] * BRIGHTER**2)
+            z, twins = scores(mine, own), [scores(mine, turned), scores(mine, brighter)]
             # A table may be so plain that nobody could tell.
             if equal(scores(own, turned)):
                 twins[0] = None
@@ -155,7 +158,8 @@ def main():
             sheet.append(np.concatenate([mine[0], own[0]], axis=0))
             told = [f"{np.mean(t**2):.1f}" if t is not None else "its own pictures are equal" for t in twins]
             print(f"| {material} | {mine[0].mean() / own[0].mean():.4f} | {np.mean(z**2):.2f} | {np.max(np.abs(z)):.1f} "
-                  f"| {np.sum(mine[2]) / np.sum(own[2]):.2f} | {told[0]} | {told[1]} |{'' if right else ' **differs**'}", flush=True)
+                  f"| {np.sum(mine[2]) / np.sum(own[2]):.2f} | {told[0]} | {told[1]} |{'' if right else ' **differs**'}",
+                  flush=True)
     if o.sheet and sheet:
         mi.util.write_bitmap(str(o.sheet), np.concatenate(sheet, axis=1).astype(np.float32))
     print("\nEqual by the z-test, and every twin is not." if good else "\nNOT equal.")
