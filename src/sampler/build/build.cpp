@@ -184,6 +184,7 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
         options.domain ? DomainChoice{*options.domain} : choose_domain(subject, options, seen, ridges, host);
     if (!seen.frame.isotropic()) choice.domain.symmetry = Symmetry::none;
     const Field field = field_of(subject, seen, choice, ridges);
+    check_patches(field, options.seed);
     Attempt attempt = attempt_exact(field, seen, options, patient, effort, host, data.report);
     // Whether half of the budget is left for another attempt, one-shot trees of this one included.
     const auto half_is_left = [&] { return evaluations + effort.evaluations < options.max_evaluations / 2; };

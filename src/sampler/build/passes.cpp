@@ -47,32 +47,32 @@ std::vector<Slab> build_exact(const Survey& survey, const BuildOptions& options,
   rules.progress = 0.4f, rules.progress_end = 0.6f;
   survey.host.stage("growing exact trees");
   grow(slabs, survey, rules);
-  rules.split_slabs = false;
+  // What is dear for its width alone is halved still, where wo has two angles or f parameters.
+  const bool crowded = survey.field.whole().axes > 1;
+  rules.split_slabs = crowded;
+  if (crowded) rules.enough = options.expected_trials;
   rules.progress = 0.6f, rules.progress_end = 0.85f;
   survey.host.stage("attacking the bounds");
-  std::vector<std::size_t> first_new(slabs.size(), 0);
-  std::vector<float> overshoot(slabs.size(), 1);  // as last estimated; slabs that are good are left alone
   for (int pass = 0; pass < max_passes; ++pass) {
     // A lobe that was met by chance is better looked at from the start than grown around blindly.
     if (survey.towers && !survey.towers->empty() && report.overshoot_mass > 0.02f) break;
-    maximise(slabs, first_new, survey);
+    maximise(slabs, survey);
     // However many leaves there are, a pass has an end.
     const auto leaves = float(leaf_count(slabs));
     const float per_leaf = min(clamp(1.5e6f / leaves, 400.f, 20000.f), max(6e7f / leaves, 40.f));
-    probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey,
-          overshoot);
-    report.overshoot_mass = *std::max_element(overshoot.begin(), overshoot.end());
+    probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey);
+    report.overshoot_mass = 0;
     bool dear = false;
-    for (std::size_t s = 0; s < slabs.size(); ++s) {
-      first_new[s] = slabs[s].nodes.size();
-      dear = dear || total_of(slabs[s]).cost > double(options.expected_trials);
+    for (const Slab& slab : slabs) {
+      report.overshoot_mass = max(report.overshoot_mass, slab.overshoot);
+      dear = dear || total_of(slab).cost > double(options.expected_trials);
     }
     if (survey.effort.spent() || (!dear && report.overshoot_mass <= accepted_overshoot)) break;
     if (dear && pass + 1 < max_passes) {  // what grows last is attacked, too
       rules.goal -= 0.06f * (options.expected_trials - 1);
       grow(slabs, survey, rules);
-      for (std::size_t s = 0; s < slabs.size(); ++s) {
-        if (slabs[s].nodes.size() > first_new[s]) overshoot[s] = 1;
+      for (Slab& slab : slabs) {
+        if (slab.nodes.size() > slab.attacked) slab.overshoot = 1;
       }
     }
   }
