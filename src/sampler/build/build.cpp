@@ -105,6 +105,7 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
       met.push_back(field_point(s.viewer, s.p)), told = told && std::isfinite(s.ratio);
     if (field.frame.isotropic() || met.empty() || !told || round + 1 == rounds) break;
     raise_at(attempt.exact, met, apart);
+    mend_exact(attempt.exact, survey, options, report);
   }
   attempt.seen.wrong.insert(attempt.seen.wrong.end(), stepped_over.begin(), stepped_over.end());
   std::stable_sort(attempt.seen.wrong.begin(), attempt.seen.wrong.end(),
