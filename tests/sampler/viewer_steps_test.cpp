@@ -133,6 +133,71 @@ TEST(ViewerSteps, PatchesOfViewersAreExact) {
     EXPECT_TRUE(all_passed(results)) << theta << '\n' << to_text(results);
   }
 }
+
+// A few narrow patches hold most of the light: between the points of a grid they hide.
+KlemsTable narrow_patches() {
+  KlemsTable table;
+  table.incident = KlemsBasis({0, 0.5, pi_v<double> / 2}, {1, 4});
+  table.exiting = KlemsBasis({0, 0.1, 0.7, 0.72, 1.3, 1.31, pi_v<double> / 2}, {1, 8, 30, 24, 50, 12});
+  Pcg32 u(8);
+  for (int i = 0; i < 5 * 125; ++i) table.values.push_back(u() % 16 ? 0.02f : 2 * to_unit_float(u()));
+  return table;
+}
+SampleStatistics trials_of(const AnyBrdf& f, const SamplerData& data) {
+  const auto s = make_sampler(f, data);
+  SampleStatistics statistics;
+  Pcg32 u(9);
+  for (int i = 0; i < 300'000; ++i)
+    s.exact.sample(wo_at(89.9 * to_unit_double(u()), 6.2831853 * to_unit_double(u())), u, statistics);
+  return statistics;
+}
+TEST(ViewerSteps, ABoundOverPatchesIsNeverExceeded) {
+  const AnyBrdf f = narrow_patches();
+  const SamplerData data = build(f);
+  EXPECT_LE(data.report.expected_trials, 1.25f);
+  EXPECT_EQ(data.report.overshoot_mass, 0);
+  EXPECT_EQ(trials_of(f, data).overshoots, 0U);
+  EXPECT_TRUE(data.report.notes.empty()) << data.report.notes.front();
+  // What a patch holds is known: no cubature need judge.
+  const KlemsTable table = narrow_patches();
+  const auto s = make_sampler(f, data);
+  const Direction wo = wo_at(50, 1);
+  const int in = table.incident.patch_of({-wo.x, -wo.y, wo.z}), n = 200'000;
+  std::vector<int> drawn(125, 0);
+  Pcg32 u(10);
+  for (int i = 0; i < n; ++i) ++drawn[std::size_t(table.exiting.patch_of(s.exact.sample(wo, u)->wi))];
+  double chi_square = 0;
+  for (int k = 0; k < 125; ++k) {
+    const double mass = double(table.value(in, k)) * table.exiting.projected_solid_angle(k);
+    const double mean = n * mass / table.traits().albedo(wo);
+    chi_square += std::pow(drawn[std::size_t(k)] - mean, 2) / mean;
+  }
+  EXPECT_LT(chi_square, 240);  // 124 degrees of freedom: 1e-9
+}
+// The judge can fail: bounds that are two percent too low.
+TEST(ViewerStepsTwin, BoundsOverPatchesTooLow) {
+  const AnyBrdf f = narrow_patches();
+  SamplerData data = build(f);
+  for (MajorantTree& tree : data.exact) tree.volume *= 0.98f;
+  EXPECT_GT(trials_of(f, data).overshoots, 1000U);
+}
+// Patches that are not those of the function.
+struct WrongPatches : KlemsTable {
+  BrdfTraits traits() const {
+    BrdfTraits t = KlemsTable::traits();
+    t.patches[1].phi_i.pop_back();
+    return t;
+  }
+};
+TEST(ViewerStepsTwin, PatchesToldWrongly) {
+  try {
+    build(AnyBrdf(WrongPatches{narrow_patches()}));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("constant over patches"), std::string::npos) << error.what();
+  }
+}
+
 // An albedo that a function tells wrongly is not believed.
 struct WrongAboutItself : KlemsTable {
   BrdfTraits traits() const {

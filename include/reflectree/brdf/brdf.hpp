@@ -88,6 +88,12 @@ struct AzimuthKnots {
   std::vector<float> phi_o;  // radians, in any order
 };
 
+// A band of wi, from the elevation where the band before ends, cut into patches at azimuths.
+struct PatchBand {
+  float theta_i_end;         // radians; of the last band pi/2
+  std::vector<float> phi_i;  // radians, in any order; none: one patch
+};
+
 class BrdfEnclosure;  // enclosure.hpp
 
 // What a function may tell about itself. The builder verifies what it can.
@@ -104,6 +110,8 @@ struct BrdfTraits {
   std::vector<float> theta_d_knots;  // radians: difference angles where f has kinks; theta_o meets them at a
                                      // mirror lobe, where the albedo inherits them
   std::vector<AzimuthKnots> phi_o_knots;  // bands of theta_o, ascending
+  // Of a function that is constant in wi over patches, for every wo: bands from the normal to the horizon.
+  std::vector<PatchBand> patches;
   // Of a function of one channel: the integral of f cos_i over the hemisphere for a viewer, known exactly.
   // Empty: cubature finds it, as it checks what is told.
   std::function<double(Direction wo)> albedo;

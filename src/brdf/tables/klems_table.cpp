@@ -60,6 +60,13 @@ BrdfTraits KlemsTable::traits() const {
     for (float& phi : band.phi_o) phi = seen_through ? 2 * pi - phi : phi + pi;
     traits.phi_o_knots.push_back(std::move(band));
   }
+  const std::vector<float>& ends = exiting.ring_borders();
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    PatchBand band{ends[i], exiting.azimuth_borders(i - 1)};
+    for (float& phi : band.phi_i) phi = seen_through ? pi - phi : phi;
+    traits.patches.push_back(std::move(band));
+  }
+  if (ends.back() < 0.5f * pi) traits.patches.push_back({0.5f * pi, {}});
   // Sums over the exiting patches, of every incident one.
   std::vector<double> albedo;
   for (int in = 0; in < incident.size(); ++in) {

@@ -105,6 +105,7 @@ Attempt attempt_exact(const Field& field, const Examination& seen, const BuildOp
       met.push_back(field_point(s.viewer, s.p)), told = told && std::isfinite(s.ratio);
     if (field.frame.isotropic() || met.empty() || !told || round + 1 == rounds) break;
     raise_at(attempt.exact, met, apart);
+    mend_exact(attempt.exact, survey, options, report);
   }
   attempt.seen.wrong.insert(attempt.seen.wrong.end(), stepped_over.begin(), stepped_over.end());
   std::stable_sort(attempt.seen.wrong.begin(), attempt.seen.wrong.end(),
@@ -184,6 +185,7 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
         options.domain ? DomainChoice{*options.domain} : choose_domain(subject, options, seen, ridges, host);
     if (!seen.frame.isotropic()) choice.domain.symmetry = Symmetry::none;
     const Field field = field_of(subject, seen, choice, ridges);
+    check_patches(field, options.seed);
     Attempt attempt = attempt_exact(field, seen, options, patient, effort, host, data.report);
     // Whether half of the budget is left for another attempt, one-shot trees of this one included.
     const auto half_is_left = [&] { return evaluations + effort.evaluations < options.max_evaluations / 2; };

@@ -122,7 +122,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
   std::vector<FieldValue> values(points.size());
   survey.eval(points, values);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (survey.at_jump(points[i].wo)) continue;
+    if (survey.at_jump(points[i])) continue;
     const float a = survey.albedo_at(points[i].viewer());
     if (!(values[i].upper > 0)) continue;
     const Slab& slab = slabs[slab_index(partition, points[i].viewer(), whole)];
@@ -158,7 +158,7 @@ CrossExamination cross_examine(const std::vector<Slab>& slabs, const Survey& sur
     Mean once, accepted;
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) {
       const float a = survey.albedo_at(points[i].viewer());
-      if (!(a > 0) || survey.at_jump(points[i].wo)) continue;
+      if (!(a > 0) || survey.at_jump(points[i])) continue;
       // Of mirror images on half a square one is drawn: their mean is what is accepted.
       const double ratio = double(values[i].mean) / (double(a) * double(bounds[i]));
       once.add(volume * ratio), accepted.add(volume * std::min(ratio, 1.));

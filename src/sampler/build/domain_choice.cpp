@@ -64,8 +64,11 @@ std::vector<KnownBox> trial_boxes(const ViewerFrame& frame) {
       boxes.push_back({{lo, 0}, {hi, 0}, 1});
       continue;
     }
-    const float span = azimuth_span(frame.symmetry), across = min(10 * degree, 0.1f * span);
-    for (const float share : {0.08f, 0.5f, 0.85f}) {
+    // About the normal a slab may have all azimuths, where the domain does not turn with wo.
+    const float span = azimuth_span(frame.symmetry);
+    const float across = t.theta < 10 ? span / 3 : min(10 * degree, 0.1f * span);
+    for (const float share :
+         t.theta < 10 ? std::array{0.f, 1 / 3.f, 2 / 3.f} : std::array{0.08f, 0.5f, 0.85f}) {
       boxes.push_back({{lo, share * span}, {hi, share * span + across}, 2});
     }
   }
@@ -168,12 +171,16 @@ AlbedoTable flat_albedo(const Field& field) {
 Field field_of(const Subject& subject, const Examination& seen, const DomainChoice& choice,
                const std::vector<Ridge>& ridges) {
   const bool both_sides = choice.domain.half() && !seen.mirror_symmetric;
-  return {subject.f,  seen.target,    choice.domain,      both_sides, ridges,
-          seen.frame, subject.family, subject.parameters, choice.law};
+  Field field{subject.f,  seen.target,    choice.domain,      both_sides, ridges,
+              seen.frame, subject.family, subject.parameters, choice.law};
+  field.patches = patch_cells(field);
+  return field;
 }
 
 DomainChoice choose_domain(const Subject& subject, const BuildOptions& options, const Examination& seen,
                            const std::vector<Ridge>& ridges, const Host& host) {
+  const DomainChoice disk{{DomainKind::projected_disk, Symmetry::none}};
+  if (!field_of(subject, seen, disk, ridges).patches.empty()) return disk;
   const Field any = field_of(subject, seen, {}, ridges);
   const AlbedoTable flat = flat_albedo(any);
   // A coarser goal, and no slab is halved: what the known coordinates cost is counted in.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "known_box.hpp"
+#include "patches.hpp"
 #include "reflectree/brdf/family.hpp"
 #include "reflectree/brdf/target.hpp"
 #include "reflectree/host.hpp"
@@ -52,6 +53,7 @@ struct Field {
   std::vector<KnownParameter> parameters = {};
   ScaleLaw law = {};
   const TreeMarks* marks = nullptr;  // what trees of this field have met, for the cubature of the albedo
+  std::vector<PatchCell> patches = {};
 
   // All that is known of viewers.
   KnownBox whole() const;
@@ -104,6 +106,7 @@ struct Survey {
   }
   // So close to a jump that rounding decides on which side wo is.
   bool at_jump(Direction wo) const;
+  bool at_jump(const FieldPoint& q) const { return at_jump(q.wo) || on_patch_border(field.patches, q.p); }
   void eval(std::span<const FieldPoint> points, std::span<FieldValue> out) const {
     eval_in_parallel(field, host, effort, points, out);
   }

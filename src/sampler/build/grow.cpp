@@ -16,6 +16,7 @@ struct SlabState {
   bool active = true;
   std::size_t leaves = 1;
   std::size_t next_check = 16;
+  std::size_t most = 0;
 };
 
 // The grid of a cell, for all views.
@@ -60,6 +61,15 @@ void add_octaves(std::vector<Visit>& visits, std::size_t task, const Slab& slab,
 void evaluate(std::vector<Slab>& slabs, const std::vector<Task>& tasks, const Survey& survey,
               const GrowthRules& rules) {
   const Field& field = survey.field;
+  if (!field.patches.empty()) {
+    survey.host.parallel_for(tasks.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        Slab& slab = slabs[tasks[t].slab];
+        analyse_patches(slab.nodes[tasks[t].node].leaf, slab, field, rules.bounds);
+      }
+    });
+    return;
+  }
   std::vector<std::size_t> first;  // of each task's grid
   std::size_t first_visit = 0;
   for (const Task& task : tasks)
@@ -210,7 +220,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
         all > dearer[slab.box.axes - 1] * rules.known_share * max(budget * ideal, cost - ideal))
       return {dearest, {}};
   }
-  if (met || state.leaves >= rules.max_leaves) return {};
+  if (met || state.leaves >= state.most) return {};
   if (!blind.empty()) return {-1, blind};
   const float fair = 1.5f * budget * ideal / float(state.leaves);  // equal shares are the optimum
   return {-1, dearest_leaves(slab, rules, cost - goal * ideal, fair)};
@@ -222,7 +232,7 @@ struct Halved {
   int axis;
 };
 void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector<Task>& tasks,
-           const std::vector<Halved>& halved, const Survey& survey) {
+           const std::vector<Halved>& halved, const Survey& survey, const GrowthRules& rules) {
   std::vector<Slab> next;
   std::vector<SlabState> next_states;
   std::vector<std::uint32_t> moved(slabs.size());
@@ -242,6 +252,7 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
       fresh.push_back({std::uint32_t(next.size()), 0});
       next.push_back(make_slab(box, survey.albedo, survey.field));
       next_states.push_back({});
+      next_states.back().most = rules.max_leaves;
     }
   }
   for (Task& task : tasks) task.slab = moved[task.slab];
@@ -275,6 +286,9 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
     // A root that was looked at before may have been raised since: it keeps its bound.
     if (slabs[s].nodes.size() == 1 && slabs[s].nodes[0].leaf.cost == 0) tasks.push_back({s, 0});
     states[s].leaves = leaves_in_order(slabs[s]).size();
+    states[s].active = !(rules.enough > 0 && total(slabs[s], &Leaf::cost) <= rules.enough);
+    states[s].most =
+        rules.enough > 0 ? std::min(rules.max_leaves, 4 * states[s].leaves + 64) : rules.max_leaves;
   }
   const std::uint64_t start = survey.effort.evaluations, limit = survey.effort.limit;
   const double left = double(limit) - double(std::min(start, limit));
@@ -312,7 +326,7 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
       states[s].leaves += step.split.size();
       busy = busy || step.halve >= 0 || !step.split.empty();
     }
-    if (!halved.empty()) halve(slabs, states, tasks, halved, survey);
+    if (!halved.empty()) halve(slabs, states, tasks, halved, survey, rules);
   }
 }
 

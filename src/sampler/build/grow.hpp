@@ -33,6 +33,9 @@ struct GrowthRules {
   // more; and none grows beyond what that effort allows for each. 0: whoever comes first.
   std::size_t leaves_kept = 0;
   float grazing_goal = 0;  // of grazing slabs; 0: the same
+  // After an attack slabs that cost no more than this are done, however far from the goal, and no other may have
+  // more than a few times the leaves that it has: what it costs may come of its width. 0: no such mercy.
+  float enough = 0;
 
   float goal_of(const Slab& slab) const { return grazing_goal > 0 && is_grazing(slab) ? grazing_goal : goal; }
 };

@@ -73,40 +73,8 @@ std::size_t axes_of(std::span<const View> views) {
   return axes;
 }
 
-// The mean over the groups of views along an axis of each group's largest value.
-template <class Value>
-float mean_of_largest(std::span<const View> views, std::size_t axis, const Value& value) {
-  float sum = 0;
-  for (std::size_t g = 0; g < views_per_axis; ++g) {
-    float weight = 0, largest = 0;
-    for (std::size_t k = 0; k < views.size(); ++k) {
-      if (views[k].group[axis] == g) weight += views[k].weight, largest = max(largest, value(k));
-    }
-    sum += weight * largest;
-  }
-  return sum;
-}
-
 float grid_shape(float slope_x, float slope_y, int j, int i) {
   return (1 + slope_x * lobatto_nodes[i]) * (1 + slope_y * lobatto_nodes[j]);
-}
-
-// The mean square of the means of T over the groups of views along an axis, at a node.
-float between(std::span<const View> views, std::size_t axis, Grid grid, int j, int i) {
-  const auto value = [&](std::size_t k) {
-    return grid[k * grid_points + std::size_t(j * grid_size + i)].mean;
-  };
-  float sum = 0;
-  for (std::size_t g = 0; g < views_per_axis; ++g) {
-    float weight = 0, moment = 0, only = 0;
-    std::size_t members = 0;
-    for (std::size_t k = 0; k < views.size(); ++k) {
-      if (views[k].group[axis] != g) continue;
-      ++members, only = value(k), weight += views[k].weight, moment += views[k].weight * value(k);
-    }
-    sum += weight * sqr(members == 1 ? only : moment / weight);
-  }
-  return sum;
 }
 
 }  // namespace
@@ -193,8 +161,11 @@ void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {
     for (int i = 0; i < grid_size; ++i) {
       const float w = lobatto_weights[j] * lobatto_weights[i] / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
       square += w * s[j][i];
+      const auto value = [&](std::size_t k) {
+        return grid[k * grid_points + std::size_t(j * grid_size + i)].mean;
+      };
       for (std::size_t axis = 0; axis < axes; ++axis) {
-        steady[axis] += w * (sqr(m[j][i]) + (s[j][i] - between(views, axis, grid, j, i)));
+        steady[axis] += w * (sqr(m[j][i]) + (s[j][i] - between(views, axis, value)));
       }
       difference += w * d[j][i];
     }

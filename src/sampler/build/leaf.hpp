@@ -51,6 +51,35 @@ struct View {
 
 inline constexpr std::size_t views_per_axis = 3;  // Simpson's
 
+// The mean over the groups of views along an axis of each group's largest value.
+template <class Value>
+float mean_of_largest(std::span<const View> views, std::size_t axis, const Value& value) {
+  float sum = 0;
+  for (std::size_t g = 0; g < views_per_axis; ++g) {
+    float weight = 0, largest = 0;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (views[k].group[axis] == g) weight += views[k].weight, largest = max(largest, value(k));
+    }
+    sum += weight * largest;
+  }
+  return sum;
+}
+// The mean square of the means of a value over the groups of views along an axis.
+template <class Value>
+float between(std::span<const View> views, std::size_t axis, const Value& value) {
+  float sum = 0;
+  for (std::size_t g = 0; g < views_per_axis; ++g) {
+    float weight = 0, moment = 0, only = 0;
+    std::size_t members = 0;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (views[k].group[axis] != g) continue;
+      ++members, only = value(k), weight += views[k].weight, moment += views[k].weight * value(k);
+    }
+    sum += weight * sqr(members == 1 ? only : moment / weight);
+  }
+  return sum;
+}
+
 // Where a point of the grid lies: shares of slab and leaf, in [0, 1].
 struct GridPlace {
   Shares known;

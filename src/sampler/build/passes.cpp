@@ -36,50 +36,88 @@ std::size_t leaf_count(const std::vector<Slab>& slabs) {
 
 }  // namespace
 
-std::vector<Slab> build_exact(const Survey& survey, const BuildOptions& options, BuildReport& report) {
-  std::vector<Slab> slabs = first_slabs(survey);
-  constexpr float accepted_overshoot = 2e-7f;
-  constexpr int max_passes = 8;
+namespace {
+
+constexpr float attack_takes = 0.06f;  // of the trials allowed, that one pass of an attack may cost
+
+// Whether wo has two angles or f parameters.
+bool is_crowded(const Survey& survey) { return survey.field.whole().axes > 1; }
+
+GrowthRules exact_rules(const Survey& survey, const BuildOptions& options) {
   const float spare = 0.96f;  // of the budget: the attack will use the rest
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   // Where wo has two angles slabs are many, and their attack costs as much as their growth.
   if (!survey.field.frame.isotropic()) rules.effort_share = 0.5f, rules.leaves_kept = 400;
-  rules.progress = 0.4f, rules.progress_end = 0.6f;
-  survey.host.stage("growing exact trees");
+  return rules;
+}
+
+bool any_is_dear(const std::vector<Slab>& slabs, const BuildOptions& options) {
+  return std::any_of(slabs.begin(), slabs.end(),
+                     [&](const Slab& slab) { return total_of(slab).cost > double(options.expected_trials); });
+}
+
+// What grows after an attack is attacked, too.
+void grow_dear(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options,
+               GrowthRules& rules) {
+  rules.goal -= attack_takes * (options.expected_trials - 1);
   grow(slabs, survey, rules);
-  rules.split_slabs = false;
-  rules.progress = 0.6f, rules.progress_end = 0.85f;
-  survey.host.stage("attacking the bounds");
-  std::vector<std::size_t> first_new(slabs.size(), 0);
-  std::vector<float> overshoot(slabs.size(), 1);  // as last estimated; slabs that are good are left alone
+  for (Slab& slab : slabs) {
+    if (slab.nodes.size() > slab.attacked) slab.overshoot = 1;
+  }
+}
+
+// Attacks, and grows again what is too dear then.
+void attack(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options, GrowthRules rules,
+            BuildReport& report) {
+  constexpr float accepted_overshoot = 2e-7f;
+  constexpr int max_passes = 8;
   for (int pass = 0; pass < max_passes; ++pass) {
     // A lobe that was met by chance is better looked at from the start than grown around blindly.
     if (survey.towers && !survey.towers->empty() && report.overshoot_mass > 0.02f) break;
-    maximise(slabs, first_new, survey);
+    maximise(slabs, survey);
     // However many leaves there are, a pass has an end.
     const auto leaves = float(leaf_count(slabs));
     const float per_leaf = min(clamp(1.5e6f / leaves, 400.f, 20000.f), max(6e7f / leaves, 40.f));
-    probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey,
-          overshoot);
-    report.overshoot_mass = *std::max_element(overshoot.begin(), overshoot.end());
-    bool dear = false;
-    for (std::size_t s = 0; s < slabs.size(); ++s) {
-      first_new[s] = slabs[s].nodes.size();
-      dear = dear || total_of(slabs[s]).cost > double(options.expected_trials);
-    }
+    probe(slabs, per_leaf, options.seed + 1000003ULL * std::uint64_t(pass), accepted_overshoot, survey);
+    report.overshoot_mass = 0;
+    for (const Slab& slab : slabs) report.overshoot_mass = max(report.overshoot_mass, slab.overshoot);
+    const bool dear = any_is_dear(slabs, options);
     if (survey.effort.spent() || (!dear && report.overshoot_mass <= accepted_overshoot)) break;
-    if (dear && pass + 1 < max_passes) {  // what grows last is attacked, too
-      rules.goal -= 0.06f * (options.expected_trials - 1);
-      grow(slabs, survey, rules);
-      for (std::size_t s = 0; s < slabs.size(); ++s) {
-        if (slabs[s].nodes.size() > first_new[s]) overshoot[s] = 1;
-      }
-    }
+    if (dear && pass + 1 < max_passes) grow_dear(slabs, survey, options, rules);
   }
   report.expected_trials = 0;
   for (const Slab& slab : slabs)
     report.expected_trials = max(report.expected_trials, float(total_of(slab).cost));
+}
+
+// What is dear for its width alone is halved still.
+GrowthRules rules_of_attack(const Survey& survey, const BuildOptions& options) {
+  GrowthRules rules = exact_rules(survey, options);
+  rules.split_slabs = is_crowded(survey);
+  if (is_crowded(survey)) rules.enough = options.expected_trials;
+  rules.progress = 0.6f, rules.progress_end = 0.85f;
+  return rules;
+}
+
+}  // namespace
+
+std::vector<Slab> build_exact(const Survey& survey, const BuildOptions& options, BuildReport& report) {
+  std::vector<Slab> slabs = first_slabs(survey);
+  GrowthRules rules = exact_rules(survey, options);
+  rules.progress = 0.4f, rules.progress_end = 0.6f;
+  survey.host.stage("growing exact trees");
+  grow(slabs, survey, rules);
+  survey.host.stage("attacking the bounds");
+  attack(slabs, survey, options, rules_of_attack(survey, options), report);
   return slabs;
+}
+
+void mend_exact(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options,
+                BuildReport& report) {
+  if (survey.effort.spent() || !any_is_dear(slabs, options)) return;
+  GrowthRules rules = rules_of_attack(survey, options);
+  grow_dear(slabs, survey, options, rules);
+  attack(slabs, survey, options, rules, report);
 }
 
 namespace {

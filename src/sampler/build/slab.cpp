@@ -27,6 +27,10 @@ Slab make_slab(const KnownBox& box, const AlbedoTable& table, const Field& field
     const Viewer at = viewer(place);
     slab.views.push_back({place, group, weight, box.at(place), at, albedo_of(field, table, at)});
   }
+  if (!field.patches.empty()) {
+    slab.patches = patches_of(field, slab.views);
+    return slab;
+  }
   // The landmarks' way through the slab, along each axis.
   Shares middle{};
   for (std::size_t a = 1; a < axes; ++a) middle[a] = 0.5f;

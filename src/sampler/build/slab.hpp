@@ -28,6 +28,9 @@ struct Slab {
   };
   std::vector<Mark> marks;
   std::vector<Node> nodes;  // nodes[0] is the root
+  SlabPatches patches = {};
+  std::size_t attacked = 0;  // nodes whose bounds were attacked
+  float overshoot = 1;       // of exact trees, as last estimated
 };
 
 // A slab with its views and an unsplit root.

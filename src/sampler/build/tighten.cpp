@@ -118,22 +118,23 @@ void raise(const Climber& c, float bound) {
 
 }  // namespace
 
-void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Survey& survey) {
+void maximise(std::vector<Slab>& slabs, const Survey& survey) {
   const Field& field = survey.field;
+  if (!field.patches.empty()) return;  // bounds stand on all that leaves hold
   std::vector<Climber> climbers;
-  for (std::size_t s = 0; s < slabs.size(); ++s) {
-    for (std::size_t i = first_new[s]; i < slabs[s].nodes.size(); ++i) {
-      Node& node = slabs[s].nodes[i];
+  for (Slab& slab : slabs) {
+    for (std::size_t i = slab.attacked; i < slab.nodes.size(); ++i) {
+      Node& node = slab.nodes[i];
       if (node.split != TreeSplit::leaf) continue;
       // From the largest ratio of the grid, and from the largest T seen by anyone.
       Leaf& leaf = node.leaf;
       const Box box = box_of(leaf.cell, field.domain);
-      climbers.push_back(
-          start_at(slabs[s], leaf, grid_place(slabs[s].views, leaf.peak), 0, 0.2f, field.domain));
+      climbers.push_back(start_at(slab, leaf, grid_place(slab.views, leaf.peak), 0, 0.2f, field.domain));
       if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
-      climbers.push_back(start_at(slabs[s], leaf, place_in(slabs[s], box, leaf.seen_by, leaf.seen_at),
+      climbers.push_back(start_at(slab, leaf, place_in(slab, box, leaf.seen_by, leaf.seen_at),
                                   leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));
     }
+    slab.attacked = slab.nodes.size();
   }
   climb(climbers, 7, survey);
   for (const Climber& c : climbers) raise(c, c.value * (1 + margin));
@@ -180,8 +181,9 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
         const Leaf& leaf = slabs[probed[k].slab].nodes[probed[k].node].leaf;
         const Box box = box_of(leaf.cell, field.domain);
         for (std::size_t i = probed[k].first; i < probed[k].first + probed[k].count; ++i) {
-          ratios[i] =
-              ratio_of(normaliser(survey, points[i].viewer()), leaf, box, points[i].p, values[i].*image);
+          const bool at_border = on_patch_border(field.patches, points[i].p);
+          const float albedo = at_border ? 0 : normaliser(survey, points[i].viewer());
+          ratios[i] = ratio_of(albedo, leaf, box, points[i].p, values[i].*image);
         }
       }
     });
@@ -203,8 +205,8 @@ void probe_leaves(std::vector<Slab>& slabs, std::uint64_t seed, float FieldValue
 
 }  // namespace
 
-void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
-           std::vector<float>& overshoot) {
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted,
+           const Survey& survey) {
   const Field& field = survey.field;
   std::vector<double> found(slabs.size(), 0), mean_cost;
   for (const Slab& slab : slabs) {
@@ -216,7 +218,7 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
   std::vector<Climber> climbers;
   const auto count = [&](const Slab& slab, std::uint32_t i) {
     const auto s = std::size_t(&slab - slabs.data());
-    if (overshoot[s] <= accepted) return std::size_t(0);
+    if (slab.overshoot <= accepted) return std::size_t(0);
     const double fair = double(slab.nodes[i].leaf.cost) / mean_cost[s];
     return std::size_t(double(per_leaf) * (0.25 + 0.75 * fair)) + 1;
   };
@@ -242,7 +244,7 @@ void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float a
   climb(climbers, 6, survey);
   for (const Climber& c : climbers) raise(c, 2 * c.value - c.leaf->height + margin * c.value);
   for (std::size_t s = 0; s < slabs.size(); ++s) {
-    if (overshoot[s] > accepted) overshoot[s] = float(found[s]);
+    if (slabs[s].overshoot > accepted) slabs[s].overshoot = float(found[s]);
   }
 }
 
@@ -265,6 +267,7 @@ void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, cons
 
 void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey) {
   const Field& field = survey.field;
+  if (!field.patches.empty()) return;
   constexpr double doubtful = 1.5;  // more than the scatter of honest leaves
   // Twice as many where slabs spread over two angles of wo.
   const std::size_t times = field.frame.isotropic() ? 1 : 2;

@@ -9,15 +9,15 @@
 
 namespace reflectree::detail {
 
-// Raises share and cost of the leaves of `slabs` from node index `first_new[s]` on, by local maximisation
-// in (theta_o, x, y), and adds the margin for what it may still miss.
-void maximise(std::vector<Slab>& slabs, const std::vector<std::size_t>& first_new, const Survey& survey);
+// Raises share and cost of the leaves that were not attacked yet, by local maximisation in (theta_o, x, y), and
+// adds the margin for what it may still miss.
+void maximise(std::vector<Slab>& slabs, const Survey& survey);
 
 // Random probes, `per_leaf` on average and in proportion to the leaf's cost, in the slabs whose mass of
-// overshoot (one per slab) is above `accepted`; every overshoot raises its leaf past the value found. Writes
-// the mass seen, before the raise, to `overshoot`.
-void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted, const Survey& survey,
-           std::vector<float>& overshoot);
+// overshoot is above `accepted`; every overshoot raises its leaf past the value found. Slabs get the mass seen,
+// before the raise.
+void probe(std::vector<Slab>& slabs, float per_leaf, std::uint64_t seed, float accepted,
+           const Survey& survey);
 
 // Raises the bounds of leaves to what f is at points that were met outside of an attack.
 void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, const Survey& survey);
