@@ -15,6 +15,7 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
   struct Options {
     std::string sampler, output;
     CertifyOptions certify;
+    double albedo = 0;
   };
   auto o = std::make_shared<Options>();
   command->add_option("SAMPLER", o->sampler, "A sampler file that 'reflectree build' saved")
@@ -32,12 +33,20 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
       ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 40U).description(""))
       ->capture_default_str()
       ->type_name("N");
+  command
+      ->add_option(
+          "--albedo", o->albedo,
+          "Prove the stored albedo, too, to within this relative error: 0.02 takes seconds to minutes, "
+          "half of it three times as long")
+      ->check(CLI::Range(1e-4, 0.5).description(""))
+      ->type_name("X");
   command->footer(
       "Example:\n"
       "  reflectree certify gold.rfl -o gold-certified.rfl\n"
-      "Bounds rise where the proof needs it. Exit code 1: some slabs could not be certified within the "
-      "boxes;\n"
-      "they keep their estimated bounds, and the file is written all the same.");
+      "Bounds rise where the proof needs it. Exit code 1: some slabs, or the albedo, could not be proved "
+      "within "
+      "the boxes;\n"
+      "slabs keep their estimated bounds, and the file is written all the same, with what was proved.");
   command->callback([&context, &run, o] {
     run = [&context, o] {
       if (!names_sampler_file(o->sampler, context.places())) {
@@ -47,6 +56,7 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
       if (!o->output.empty()) check_output(o->output);
       o->certify.loosest = std::max(o->certify.loosest, o->certify.tolerance);
       OpenedSampler subject = certified(context, open_sampler_file(o->sampler, context.places()), o->certify);
+      if (o->albedo > 0) prove_albedo_of(context, subject, o->albedo);
       const std::string path = o->output.empty() ? subject.sampler_file : o->output;
       save_sampler(path, subject.data);
       subject.file_size = std::filesystem::file_size(path);
@@ -54,7 +64,9 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
       context.say("saved " + path);
       const bool all = std::all_of(subject.data.exact.begin(), subject.data.exact.end(),
                                    [](const MajorantTree& t) { return t.status == BoundStatus::certified; });
-      return int(all ? exit_success : exit_check_failed);
+      const bool albedo = o->albedo == 0 || (subject.data.albedo.proved_error > 0 &&
+                                             subject.data.albedo.proved_error <= float(o->albedo));
+      return int(all && albedo ? exit_success : exit_check_failed);
     };
   });
 }

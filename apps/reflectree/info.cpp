@@ -78,6 +78,7 @@ Json json_of(const Facts& s, const std::vector<MeasuredFile>& measured) {
     return tree.status == BoundStatus::certified;
   });
   const auto [low, high] = std::minmax_element(d.albedo.albedo.begin(), d.albedo.albedo.end());
+  const bool proved = d.albedo.proved_error > 0;
   Json json{{"material", d.material},
             {"channels", s.channels},
             {"target", target_text(d.target)},
@@ -100,6 +101,7 @@ Json json_of(const Facts& s, const std::vector<MeasuredFile>& measured) {
             {"albedo_maximum", shortest(*high)},
             {"albedo_nodes", d.albedo.albedo.size()},
             {"albedo_relative_error", shortest(d.albedo.relative_error)},
+            {"albedo_proved_error", proved ? Json(shortest(d.albedo.proved_error)) : Json()},
             {"expected_trials", shortest(d.report.expected_trials)},
             {"overshoot_mass", shortest(d.report.overshoot_mass)},
             {"one_shot_variance", shortest(d.report.one_shot_variance)},
@@ -163,9 +165,10 @@ void show(const Context& context, const std::string& command, const Facts& s) {
   line("memory", fmt::format("{:.1f} KiB packed", double(bytes_of(s.packed)) / 1024));
   if (s.file_size) line("on disk", fmt::format("{:.1f} KiB", double(*s.file_size) / 1024));
   line("albedo of target",
-       fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g} up to 89.9 degrees",
+       fmt::format("{:.4g} to {:.4g}, {} nodes, relative error at most {:.3g} up to 89.9 degrees{}",
                    *low / d.target.scale, *high / d.target.scale, d.albedo.albedo.size(),
-                   d.albedo.relative_error));
+                   d.albedo.relative_error,
+                   d.albedo.proved_error > 0 ? fmt::format(" ({:.3g} proved)", d.albedo.proved_error) : ""));
   line("expected trials", fmt::format("{:.4g} in the worst slab", d.report.expected_trials));
   const bool proved = std::all_of(d.exact.begin(), d.exact.end(), [](const MajorantTree& tree) {
     return tree.status == BoundStatus::certified;

@@ -154,4 +154,15 @@ OpenedSampler certified(const Context& context, OpenedSampler subject, const Cer
   return subject;
 }
 
+void prove_albedo_of(const Context& context, OpenedSampler& subject, double relative_error) {
+  const auto start = std::chrono::steady_clock::now();
+  const AlbedoProof proof =
+      prove_albedo(subject.data, subject.f, {.relative_error = relative_error}, context.host("proving"));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  context.say(proof.relative_error < 1 ? fmt::format("proved the albedo to within {:.3g}, in {:.2f} s",
+                                                     proof.relative_error, took.count())
+                                       : "could prove nothing about the albedo within the boxes");
+  context.detail(fmt::format("looked at {} boxes", proof.boxes));
+}
+
 }  // namespace reflectree::cli

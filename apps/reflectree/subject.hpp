@@ -7,6 +7,7 @@
 #include "context.hpp"
 #include "reflectree/formats/open.hpp"
 #include "reflectree/sampler/certify.hpp"
+#include "reflectree/sampler/prove_albedo.hpp"
 
 namespace reflectree::cli {
 
@@ -34,5 +35,7 @@ void check_output(const std::string& path);
 
 // Proves what can be proved of the subject's bounds, says what was, and packs it again. Throws Error, Cancelled.
 OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options);
+// Proves the albedo to within a relative error, or as far as that is possible, and says so. Throws likewise.
+void prove_albedo_of(const Context& context, OpenedSampler& subject, double relative_error);
 
 }  // namespace reflectree::cli

@@ -249,6 +249,7 @@ constexpr ChunkReader chunk_readers[] = {
     {"FMLY", false, read_family},
     {"WDTH", false, read_widths},
     {"CERT", false, read_ratios},
+    {"ALBP", false, [](ByteReader& in, SamplerData& data) { data.albedo.proved_error = read_float(in); }},
 };
 
 const ChunkReader* find_reader(std::string_view tag) {
@@ -363,6 +364,9 @@ Bytes encode_sampler(const SamplerData& data) {
     };
     chunk("CERT", ratios, optional_flag);
   }
+  if (data.albedo.proved_error != 0)
+    chunk(
+        "ALBP", [&](Bytes& p) { append_f32(p, data.albedo.proved_error); }, optional_flag);
   if (!data.report.notes.empty()) {
     const auto notes = [&](Bytes& p) {
       append_u32(p, std::uint32_t(data.report.notes.size()));

@@ -28,6 +28,17 @@ class Certify(ProgramTest):
         self.run_program("-q", "certify", "it.rfl")
         self.assertEqual((self.folder / "it.rfl").read_bytes(), (self.folder / "proved.rfl").read_bytes())
 
+    def test_the_albedo(self):
+        self.run_program("-q", "build", MATERIAL, "-o", "it.rfl")
+        self.run_program("-q", "certify", "it.rfl", "-o", "bounds.rfl")
+        self.assertIsNone(self.json_of("info", "bounds.rfl")["albedo_proved_error"])
+        _, words = self.run_program("certify", "it.rfl", "-o", "both.rfl", "--albedo", "0.1")
+        self.assertIn("proved the albedo to within", words)
+        self.assertLessEqual(self.json_of("info", "both.rfl")["albedo_proved_error"], 0.1)
+        out, _ = self.run_program("info", "both.rfl")
+        self.assertIn(" proved)", out)
+        self.run_program("certify", "it.rfl", "--albedo", "0.9", code=2)
+
     def test_at_build(self):
         self.run_program("-q", "build", MATERIAL, "-o", "plain.rfl")
         self.run_program("-q", "certify", "plain.rfl")

@@ -29,7 +29,7 @@ inline SamplerData sampler_data() {
   density.nodes = {TreeSplit::y, TreeSplit::x, TreeSplit::leaf, TreeSplit::leaf, TreeSplit::leaf};
   density.mass = {100, 200, 300}, density.slope_x = {10, 20, 30}, density.slope_y = {-10, -20, -30};
   data.one_shot = {density};
-  data.albedo = {{min_cos_theta_o, 0.5f, 1}, {0.9f, 0.8f, 0.75f}, 1e-4f};
+  data.albedo = {{min_cos_theta_o, 0.5f, 1}, {0.9f, 0.8f, 0.75f}, 1e-4f, 0.02f};
   for (std::size_t i = 0; i < BrdfProbes::count; ++i) data.probes.target[i] = 0.01f * float(i);
   data.report = {1.25f, 1e-8f, 0.007f, 1e-3f, 123'456'789'012ULL, {}};
   return data;

@@ -84,12 +84,20 @@ AffineForm EnclosedField::target_over(const ShadingGeometry<AffineForm>& g, cons
   return reduced(packed_.target, (*enclosure_)(g), f_.channels()) * area;
 }
 
-EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const {
-  const AffineForm theta = AffineForm::variable(0, box.lo[0], box.hi[0]);
+Vec3<AffineForm> EnclosedField::viewer_over(double theta_lo, double theta_hi, CosineRange cosines) const {
+  const AffineForm theta = AffineForm::variable(0, theta_lo, theta_hi);
   AffineForm c = widened(cos(theta), length_tolerance);
   const AffineForm s = widened(sin(theta), length_tolerance);
   c.range = intersection(c.range, {double(cosines.lo), double(cosines.hi)});
-  const Vec3<AffineForm> wo{s, AffineForm(0), c};
+  return {s, AffineForm(0), c};
+}
+
+AffineForm EnclosedField::albedo(double theta_lo, double theta_hi, CosineRange cosines) const {
+  return albedo_over(viewer_over(theta_lo, theta_hi, cosines).z);
+}
+
+EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const {
+  const Vec3<AffineForm> wo = viewer_over(box.lo[0], box.hi[0], cosines);
 
   const LeafCell<float> cell = cell_of(leaf);
   const LeafCell<AffineForm> forms{
@@ -103,7 +111,7 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
 
   const DomainPointT<AffineForm> lifted = lift_box(packed_.domain, wo, at.p);
   EnclosedPoint out{target_over(lifted.geometry, lifted.projected_area), std::nullopt,
-                    albedo_over(c) * at.height};
+                    albedo_over(wo.z) * at.height};
   if (packed_.domain.half() && !mirror_symmetric_) {
     out.mirrored = target_over(mirrored_in_plane(lifted.geometry), lifted.projected_area);
   }

@@ -55,10 +55,13 @@ class EnclosedField {
            kind == DomainKind::stretched;
   }
   EnclosedPoint over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const;
+  // The stored albedo, over elevations.
+  AffineForm albedo(double theta_lo, double theta_hi, CosineRange cosines) const;
   // As a sampler computes it.
   PointValue at(const ProofPoint& point, CosineRange cosines, const PackedLeaf& leaf) const;
 
  private:
+  Vec3<AffineForm> viewer_over(double theta_lo, double theta_hi, CosineRange cosines) const;
   AffineForm albedo_over(const AffineForm& cosine) const;
   AffineForm target_over(const ShadingGeometry<AffineForm>& g, const AffineForm& projected_area) const;
 

@@ -206,7 +206,9 @@ void validate(const AlbedoTable& a) {
       if (!(abs(a.phi_o[s.first + k] - even) <= 1e-5f * end)) fail("the azimuths are not equidistant");
     }
   }
-  if (!(a.relative_error >= 0 && a.relative_error <= 1)) fail("the error is not in [0, 1]");
+  for (const float error : {a.relative_error, a.proved_error}) {
+    if (!(error >= 0 && error <= 1)) fail("the error is not in [0, 1]");
+  }
   for (std::size_t i = 0; i < a.albedo.size(); ++i) {
     if (!(std::isfinite(a.albedo[i]) && a.albedo[i] >= 0)) fail("a value is not a number");
   }

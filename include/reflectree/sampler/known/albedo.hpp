@@ -29,6 +29,8 @@ struct AlbedoTable {
   std::vector<float> albedo;       // [second parameter][first parameter][phi_o][cos_theta_o]
   // Stated bound on the error of quadrature and interpolation up to 89.9 degrees; beyond, ten times as large.
   float relative_error = 0;
+  // The same as prove_albedo() proved it; 0: not proved.
+  float proved_error = 0;
   // From 0 to azimuth_span, radians; empty for isotropic functions.
   std::vector<float> phi_o = {};
   bool even = false;                        // of a single segment: mirrored about both ends; else periodic
