@@ -113,6 +113,7 @@ void check_borders(const char* mode, const SamplerData& data, const Partition& p
           float& other = others[axes - 1 - parameters + p];
           other = value_of(data.parameters[p], other);
         }
+        if (axes > 1 + parameters) others[0] = azimuth_key(others[0]);
         const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), others.data());
         worst.must(found == s, std::string(mode) +
                                    text(", theta_o %.6g, slab %.0f: another slab", double(theta), double(s)));
@@ -124,7 +125,8 @@ void check_borders(const char* mode, const SamplerData& data, const Partition& p
       for (const float y : {0.001f, 0.5f, 0.999f}) {
         const float theta = linear_mix(x, boxes[s].lo[0], boxes[s].hi[0]);
         const float phi = linear_mix(y, boxes[s].lo[1], boxes[s].hi[1]);
-        const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), &phi);
+        const float azimuth = azimuth_key(phi);
+        const std::size_t found = forest.tree(std::max(std::cos(theta), min_cos_theta_o), &azimuth);
         worst.must(found == s, std::string(mode) + text(", theta_o %.6g, phi_o %.6g: another slab",
                                                         double(theta), double(phi)));
       }

@@ -128,6 +128,38 @@ TEST(SlabTree, FindsParametersWithoutALogarithm) {
   }
 }
 
+// phi_o is looked up by its key, for viewers all around the circle. The twin: the azimuth itself for its key.
+TEST(SlabTree, FindsTheAzimuthByItsKey) {
+  Pcg32 u(13);
+  std::size_t asked = 0, seen = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Partition p = random_partition(seed, 1, seed % 2 == 0, 4 + int(seed % 6));
+    for (std::size_t i = 0, inner = 0; i < p.axis.size(); ++i) {
+      if (p.axis[i] == Partition::leaf) continue;
+      float& split = p.split[inner++];
+      const KnownCoordinate& c = p.coordinates[1];
+      if (p.axis[i] == 1) split = 2 * pi * (split - c.lo) / (c.hi - c.lo);
+    }
+    p.coordinates[1] = {"phi_o", 0, 2 * pi};
+    const SlabTree tree(p);
+    const Partition expected = by_cosine(p);
+    for (int i = 0; i < 1000; ++i) {
+      const float phi = 2 * pi * to_unit_float(u()), c = std::max(to_unit_float(u()), min_cos_theta_o);
+      const float key = azimuth_key(ViewerSymmetry::none, std::cos(phi), std::sin(phi));
+      EXPECT_NEAR(key, azimuth_key(phi), 1e-6f);
+      const bool beside_a_border = std::any_of(p.split.begin(), p.split.end(),
+                                               [&](float split) { return std::abs(split - phi) < 1e-5f; });
+      if (beside_a_border) continue;
+      const float known[2] = {-c, phi};
+      ++asked;
+      EXPECT_EQ(tree(c, &key), find_slab(expected, known)) << seed << ' ' << phi;
+      seen += tree(c, &phi) != find_slab(expected, known);
+    }
+  }
+  EXPECT_GT(asked, 29'000U);
+  EXPECT_GT(seen, 1000U);
+}
+
 // A search begins next to its end, and what that takes is small beside the leaves.
 TEST(SlabTree, OfOneSlab) {
   Partition p = random_partition(1, 1, true, 0);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "reflectree/brdf/material/registry.hpp"
 #include "reflectree/brdf/models/ggx.hpp"
@@ -88,6 +89,58 @@ TEST(SampleBatch, OneShotIsThatOfOneByOneCalls) {
   // A plain lambda: one by one inside the block.
   const auto lobe = [](Direction wo, Direction wi) { return 1 + dot(wo, wi) * dot(wo, wi); };
   expect_one_shot_like_one_by_one(make_sampler(lobe), "lambda");
+}
+
+// Of the frame alone; the albedo is a table of random numbers.
+PackedSampler known_by(ViewerSymmetry symmetry, bool turns) {
+  AlbedoTable table{{min_cos_theta_o, 0.1f, 0.5f, 1}, {}, 1e-4f};
+  Pcg32 u(3);
+  // Two segments of five rows.
+  for (const float share : {0.f, 0.125f, 0.25f, 0.375f, 0.5f, 0.5f, 0.625f, 0.75f, 0.875f, 1.f})
+    table.phi_o.push_back(share * azimuth_span(symmetry));
+  for (std::size_t i = 0; i < table.phi_o.size() * table.cos_theta_o.size(); ++i)
+    table.albedo.push_back(0.5f + to_unit_float(u()));
+  PackedSampler packed;
+  packed.viewer.frame = {symmetry, 0.3f};
+  packed.viewer.cos_axis = cos(0.3f), packed.viewer.sin_axis = sin(0.3f);
+  packed.viewer.turns = turns;
+  packed.viewer.albedo = pack(table);
+  return packed;
+}
+
+TEST(ViewerStream, FindsTheBitsOfOneViewerAfterAnother) {
+  std::vector<Direction> wo = many_wo(333);
+  for (const Direction w : {Direction{0, 0, 1}, Direction{0.6f, 0, 0.8f}, Direction{-0.6f, -0.f, 0.8f},
+                            Direction{0, -0.6f, 0.8f}, Direction{-0.f, 0.6f, 0.8f}})
+    wo.push_back(w);
+  wo.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 1}), wo.push_back({0, 0, 2});
+  const auto bits = [](const Incidence& in) {
+    std::array<std::uint32_t, 8> b{};
+    const float field[] = {in.wo.x, in.wo.y, in.wo.z, in.cos_phi, in.sin_phi, in.azimuth, in.side, in.albedo};
+    for (std::size_t k = 0; k < 8; ++k) b[k] = std::bit_cast<std::uint32_t>(field[k]);
+    b[6] >>= 31U;  // of `side` the sign alone
+    return b;
+  };
+  for (const auto symmetry : {ViewerSymmetry::two_planes, ViewerSymmetry::one_plane,
+                              ViewerSymmetry::half_turn, ViewerSymmetry::none}) {
+    for (const bool turns : {false, true}) {
+      const PackedSampler packed = known_by(symmetry, turns);
+      detail::ViewerStream stream(packed, wo, true), shifted(packed, wo, true);
+      std::size_t none = 0, mixed_up = 0;
+      for (std::size_t i = 0; i < wo.size(); ++i) {
+        Incidence one{}, many{}, next{};
+        const bool found = find_incidence(packed.viewer, wo[i], one);
+        ASSERT_EQ(stream.find(i, many), found) << name_of(symmetry) << ' ' << i;
+        none += !found;
+        if (!found) continue;
+        EXPECT_EQ(bits(many), bits(one)) << name_of(symmetry) << ' ' << turns << ' ' << i;
+        shifted.find(std::min(i + 1, wo.size() - 1), next);  // the twin: a lane beside
+        mixed_up += bits(next) != bits(one);
+      }
+      EXPECT_EQ(none, 22U);
+      EXPECT_GT(mixed_up, 300U);
+    }
+  }
 }
 
 // A batch as a sampler that draws one direction: every other wo of the batch is a random one, so that lanes

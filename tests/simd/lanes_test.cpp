@@ -53,6 +53,8 @@ TEST(Lanes, FunctionsAreThoseOfFloats) {
   EXPECT_EQ(differences([](auto a, auto b, auto) { return exp(a) + log(b) + log1p(b); }, 200, 0.01f, 5), 0);
   EXPECT_EQ(differences([](auto a, auto b, auto) { return pow(a, b) + atan2(a, b); }, 200, 0.01f, 5), 0);
   EXPECT_EQ(differences([](auto a, auto b, auto) { return sin(a) + cos(b) + tan(a); }, 200), 0);
+  EXPECT_EQ(differences([](auto a, auto b, auto) { return angle_of(a, b) + angle_of(b, a); }, 1000), 0);
+  EXPECT_EQ(differences([](auto a, auto b, auto) { return first_quadrant_angle(a, b); }, 1000, 0, 5), 0);
   EXPECT_EQ(differences([](auto a, auto b, auto) { return asin(a) + acos(b); }, 200, -1, 1), 0);
 }
 

@@ -270,7 +270,6 @@ class Albedo:
         self._lookup = CosineLookup(lib, tables.albedo_borders)
         pieces = tables.albedo_pieces
         self._pieces = lib.floats(np.stack([pieces["base"], pieces["slope"]], axis=1))
-        self._row = len(tables.albedo_borders) - 1
         segments = tables.albedo_segments
         self._segment_count = len(segments)
         self._segments = lib.words(np.ascontiguousarray(segments).view(np.uint32)) if len(segments) else None
@@ -281,19 +280,13 @@ class Albedo:
         lib, dr, mi = self._lib, self._lib.dr, self._lib.mi
         c = view.o[2]
         i = self._lookup(c, active)
-        if self._axes:
-            rows = [self._rows(axis, x) for axis, x in zip(self._axes, view.at)]
-            if self._segments is not None:
-                rows.append(self._azimuths(view, active))
-            return dr.maximum(self._sum(rows, i * self._of_cosine, 1, c, active), 0)
-        if self._segments is None:
+        rows = [self._rows(axis, x) for axis, x in zip(self._axes, view.at)]
+        if self._segments is not None:
+            rows.append(self._azimuths(view, active))
+        if not rows:
             piece = dr.gather(mi.Vector2f, self._pieces, i, active)
             return piece.x + piece.y * c
-        (first, _, weights), sum_ = self._azimuths(view, active), mi.Float(0)
-        for n, weight in enumerate(weights):
-            piece = dr.gather(mi.Vector2f, self._pieces, (first + n) * self._row + i, active)
-            sum_ = sum_ + weight * (piece.x + piece.y * c)
-        return dr.maximum(sum_, 0)
+        return dr.maximum(self._sum(rows, i * self._of_cosine, 1, c, active), 0)
 
     def _sum(self, rows: List[Rows], at: Any, weight: Any, c: Any, active: Any) -> Any:
         """Over four rows of every axis."""

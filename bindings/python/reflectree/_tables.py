@@ -78,15 +78,16 @@ class Tables(NamedTuple):
         Nodes, in preorder, are there in one-shot mode alone; the top bit of ``lower_leaves_split_x`` says whether
         x is split.
     albedo_borders, albedo_pieces, albedo_segments : arrays
-        Lines over the cosine; of anisotropic functions row after row, whose azimuths the segments tell.
+        Lines over the cosine, ordered [cosine][second parameter][first parameter][azimuth]; of the azimuths of
+        anisotropic functions the segments tell.
     parameters : list of Parameter
         Of a family; else empty. Their coordinates come last in the partition.
     widths : list of Width
         Of the domain ``scaled_star``, along x and y.
     albedo_axes : list of AlbedoAxis
-        Of a family, whose pieces are ordered [cosine][second parameter][first parameter][azimuth].
+        Of a family.
     albedo_row : int
-        Pieces of one cosine, of families.
+        Pieces of one cosine.
     """
 
     domain: str

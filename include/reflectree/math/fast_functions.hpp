@@ -82,24 +82,30 @@ inline Vec2<float> on_circle(float turns) {
 
 // In [0, pi/2]; 0 at the origin.
 // Beyond tan(pi/8) the ratio is turned by pi/4: atan(a) = pi/4 + atan((a - 1) / (a + 1)). The rest is
-// x + x^3 P(x^2) with P of degree 3, minimax on |x| <= tan(pi/8) (truncation 2e-8).
-inline float first_quadrant_angle(float y, float x) {
-  const float lo = min(x, y), hi = max(x, y);
-  const bool turn = lo > 0.41421356f * hi;
-  const float numerator = select(turn, lo - hi, lo), denominator = select(turn, lo + hi, hi);
-  const float a = numerator / select(denominator > 0.f, denominator, 1.f);
-  const float t = a * a, t2 = t * t;
-  const float p = (-0.333329553f + t * 0.199779261f) + t2 * (-0.1387985f + t * 0.0806030888f);
-  const float angle = (a + a * (t * p)) + select(turn, 0.25f * pi, 0.f);
-  return select(y > x, 0.5f * pi - angle, angle);
+// x + x^3 P(x^2) with P of degree 3, minimax on |x| <= tan(pi/8) (truncation 2e-8). What is chosen is chosen by
+// the sign of a difference, since branches would be coin tosses; of floats or lanes.
+template <class T>
+requires single_precision<T> REFLECTREE_INLINE T first_quadrant_angle(T y, T x) {
+  const T lo = min(x, y), hi = max(x, y);
+  const T turn = T(0.41421356f) * hi - lo, steep = x - y;  // where negative
+  const T denominator = max(by_sign(turn, hi, lo + hi), T(std::numeric_limits<float>::denorm_min()));
+  const T a = by_sign(turn, lo, lo - hi) / denominator;
+  const T t = a * a, t2 = t * t;
+  const T p = (T(-0.333329553f) + t * T(0.199779261f)) + t2 * (T(-0.1387985f) + t * T(0.0806030888f));
+  const T angle = (a + a * (t * p)) + by_sign(turn, T(0), T(0.25f * pi));
+  return by_sign(steep, angle, T(0.5f * pi) - angle);
 }
 
+inline float first_quadrant_angle(float y, float x) { return first_quadrant_angle<float>(y, x); }
+
 // In [-pi, pi]; 0 at the origin.
-inline float angle_of(float y, float x) {
-  const float a = first_quadrant_angle(abs(y), abs(x));
-  const float upper = select(x < 0.f, pi - a, a);
-  return select(y < 0.f, -upper, upper);
+template <class T>
+requires single_precision<T> REFLECTREE_INLINE T angle_of(T y, T x) {
+  x = x + T(0), y = y + T(0);  // -0 is 0
+  const T a = first_quadrant_angle(abs(y), abs(x));
+  return flip_sign(by_sign(x, a, T(pi) - a), y);
 }
+inline float angle_of(float y, float x) { return angle_of<float>(y, x); }
 
 // The angle from the normal of a vector with z >= 0, from its squared sine and its cosine.
 inline float polar_angle(float sin2_theta, float cos_theta) {

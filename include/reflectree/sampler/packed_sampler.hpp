@@ -22,8 +22,8 @@ struct PackedForest {
   const PackedSlab& slab_at(float cos_theta_o) const { return slabs[lookup(cos_theta_o)]; }
   const PackedSlab& slab_at(const Incidence& in) const {
     if (tree.empty()) return slab_at(in.wo.z);
-    const float phi_o = in.phi_o;  // of a copy, so that `in` may stay in registers
-    return slabs[tree(in.wo.z, &phi_o)];
+    const float azimuth = in.azimuth;  // of a copy, so that `in` may stay in registers
+    return slabs[tree(in.wo.z, &azimuth)];
   }
   // Of families.
   const PackedSlab& family_slab_at(const Incidence& in) const {

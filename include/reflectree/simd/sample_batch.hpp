@@ -18,6 +18,7 @@
 #include "reflectree/simd/block_values.hpp"
 #include "reflectree/simd/descend.hpp"
 #include "reflectree/simd/trial_block.hpp"
+#include "reflectree/simd/viewer_stream.hpp"
 
 namespace reflectree {
 
@@ -45,16 +46,19 @@ template <class F, RandomBits U, class NoSample>
 REFLECTREE_INLINE void add_by_alias(const F& f, const PackedSampler& packed, const Domain& domain,
                                     std::span<const Direction> wo, std::size_t& i, U& u, TrialBlock& block,
                                     const NoSample& no_sample) {
-  for (; i < wo.size() && !block.full(); ++i) {
-    Incidence in;
-    if (!find_incidence_of(f, packed, wo[i], in, false)) {
-      no_sample(i);
-      continue;
+  ViewerStream viewers(packed, wo, false);
+  with_viewers(f, packed, wo, viewers, [&](const auto& find) REFLECTREE_INLINE_LAMBDA {
+    for (; i < wo.size() && !block.full(); ++i) {
+      Incidence in;
+      if (!find(i, in)) {
+        no_sample(i);
+        continue;
+      }
+      const PackedSlab& slab = slab_of<F>(packed.one_shot, in);
+      const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
+      block.add(i, in, choose_leaf(slab, leaves, bits64(u)), domain.half(), u);
     }
-    const PackedSlab& slab = slab_of<F>(packed.one_shot, in);
-    const PackedLeaf* leaves = packed.one_shot.leaves.data() + slab.first;
-    block.add(i, in, choose_leaf(slab, leaves, bits64(u)), domain.half(), u);
-  }
+  });
 }
 
 inline constexpr std::size_t descents_side_by_side = 8;
@@ -65,6 +69,7 @@ REFLECTREE_INLINE void add_by_descent(const F& f, const PackedSampler& packed, c
                                       std::size_t& i, TrialBlock& block, const NoSample& no_sample) {
   using Field = TrialBlock::Field;
   const bool half = domain.half();
+  ViewerStream viewers(packed, wo, false);
   struct Started {
     Incidence in;
     std::size_t i;
@@ -74,19 +79,21 @@ REFLECTREE_INLINE void add_by_descent(const F& f, const PackedSampler& packed, c
     Descent descents[descents_side_by_side];
     Started started[descents_side_by_side];
     std::size_t n = 0;
-    for (; i < wo.size() && n < descents_side_by_side; ++i) {
-      Started& s = started[n];
-      if (!are_uniforms(points[i].x, points[i].y) || !find_incidence_of(f, packed, wo[i], s.in, false)) {
-        no_sample(i);
-        continue;
+    with_viewers(f, packed, wo, viewers, [&](const auto& find) REFLECTREE_INLINE_LAMBDA {
+      for (; i < wo.size() && n < descents_side_by_side; ++i) {
+        Started& s = started[n];
+        if (!are_uniforms(points[i].x, points[i].y) || !find(i, s.in)) {
+          no_sample(i);
+          continue;
+        }
+        // Folded continuously across the plane of incidence.
+        const bool below = half && points[i].y < 0.5;
+        const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
+        s.i = i;
+        s.turn = below ? -0.f : 0.f;
+        descents[n++].start(packed.one_shot, slab_of<F>(packed.one_shot, s.in), points[i].x, u2);
       }
-      // Folded continuously across the plane of incidence.
-      const bool below = half && points[i].y < 0.5;
-      const double u2 = !half ? points[i].y : below ? 1 - 2 * points[i].y : 2 * points[i].y - 1;
-      s.i = i;
-      s.turn = below ? -0.f : 0.f;
-      descents[n++].start(packed.one_shot, slab_of<F>(packed.one_shot, s.in), points[i].x, u2);
-    }
+    });
     descend(descents, n);
     for (std::size_t j = 0; j < n; ++j) {
       const std::size_t k = block.add(started[j].i, started[j].in, *descents[j].leaf, half);
@@ -178,21 +185,25 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
     int trials;
   };
   Pending pending[detail::block_size];
+  detail::ViewerStream viewers(packed, wo, true);
   with_known_kind(
       detail::domain_of_all(sampler.brdf(), packed), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
         std::size_t count = 0;
         for (std::size_t i = 0; i < wo.size() || count > 0;) {
-          for (; i < wo.size() && count < detail::block_size; ++i) {
-            Pending& p = pending[count];
-            if (!detail::find_incidence_of(sampler.brdf(), packed, wo[i], p.in)) {
-              detail::store_no_sample(values.zero(), out[i]);
-              continue;
+          const auto fill = [&](const auto& find) REFLECTREE_INLINE_LAMBDA {
+            for (; i < wo.size() && count < detail::block_size; ++i) {
+              Pending& p = pending[count];
+              if (!find(i, p.in)) {
+                detail::store_no_sample(values.zero(), out[i]);
+                continue;
+              }
+              p.slab = &detail::slab_of<F>(packed.exact, p.in);
+              p.i = i;
+              p.trials = 0;
+              ++count;
             }
-            p.slab = &detail::slab_of<F>(packed.exact, p.in);
-            p.i = i;
-            p.trials = 0;
-            ++count;
-          }
+          };
+          detail::with_viewers(sampler.brdf(), packed, wo, viewers, fill);
           b.count = 0;
           for (std::size_t k = 0; k < count; ++k) {
             const Pending& p = pending[k];

@@ -103,11 +103,8 @@ float PackedAlbedo::over_rows(const AlbedoPiece* column, float cos_theta_o, floa
   std::size_t azimuth = 0;
   std::array<float, 4> azimuths{};
   if (!segments.empty()) {
-    const Segment& segment = segment_at(phi_o);
-    const float x = max((phi_o - segment.phi_o) * segment.rows_per_radian, 0.f);
-    const std::size_t k = std::min(std::size_t(x), std::size_t(segment.last));
-    azimuth = segment.first + k;
-    azimuths = cubic_weights(x - float(k));
+    const Row begin = row_at(phi_o);
+    azimuth = begin.index, azimuths = cubic_weights(begin.t);
   }
   float sum = 0;
   for (std::size_t b = 0; b < (two ? 4 : 1); ++b) {
@@ -144,7 +141,6 @@ PackedAlbedo pack(const AlbedoTable& table) {
   for (std::size_t first = 0; first < values.size(); first += columns)
     pack_row(table.cos_theta_o, values.data() + first, packed.pieces);
   packed.positive = table.parameters.size() + (rows > 0) == 1 && is_positive(values, columns);
-  if (table.parameters.empty()) return packed;
   rows = std::max<std::size_t>(rows, 1);
   for (const AlbedoAxis& axis : table.parameters) {
     packed.parameters.push_back({axis.lo, float(axis.rows - 1) / (axis.hi - axis.lo), axis.rows, rows});

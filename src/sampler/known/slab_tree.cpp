@@ -117,6 +117,7 @@ class SlabTree::Making {
   // By what a border is compared with a place.
   float key_of(std::size_t axis, float border) const {
     if (axis == 0) return -std::cos(border);
+    if (partition_.coordinates[axis].name == "phi_o") return azimuth_key(border);
     const KnownParameter* parameter = parameter_of(axis);
     return parameter ? value_of(*parameter, border) : border;
   }
@@ -133,7 +134,9 @@ class SlabTree::Making {
       axis.most = std::bit_cast<std::uint32_t>(parameter->range.hi);
       while ((axis.most - axis.first) >> axis.shift >= cells) ++axis.shift;
     } else {
-      axis.lo = c.lo, axis.per_unit = float(cells) / (c.hi - c.lo), axis.last = float(cells - 1);
+      const bool azimuth = c.name == "phi_o";
+      const float lo = azimuth ? azimuth_key(c.lo) : c.lo, hi = azimuth ? azimuth_key(c.hi) : c.hi;
+      axis.lo = lo, axis.per_unit = float(cells) / (hi - lo), axis.last = float(cells - 1);
     }
     return axis;
   }

@@ -59,9 +59,10 @@ struct AlbedoPiece {
 };
 
 // The weights of four equidistant values at -1, 0, 1, 2 in the cubic through them, at t in [0, 1].
-REFLECTREE_INLINE std::array<float, 4> cubic_weights(float t) {
-  const float a = t + 1, b = t - 1, c = t - 2;
-  return {-t * b * c / 6, a * b * c / 2, -a * t * c / 2, a * t * b / 6};
+template <class T>
+REFLECTREE_INLINE std::array<T, 4> cubic_weights(T t) {
+  const T a = t + T(1), b = t - T(1), c = t - T(2);
+  return {-t * b * c / T(6), a * b * c / T(2), -a * t * c / T(2), a * t * b / T(6)};
 }
 
 struct PackedAlbedo {
@@ -76,10 +77,10 @@ struct PackedAlbedo {
     std::uint32_t rows;
     std::size_t stride;  // pieces from row to row
   };
-  // [phi_o][cos_theta_o]; every segment with a row more at both ends. Of families
-  // [cos_theta_o][second parameter][first parameter][phi_o]: rows that are summed lie side by side.
+  // [cos_theta_o][second parameter][first parameter][phi_o], every segment and parameter with a row more at both
+  // ends: rows that are summed lie side by side.
   std::vector<AlbedoPiece> pieces;
-  std::size_t row = 0;            // pieces of one azimuth; of families those of one cos_theta_o
+  std::size_t row = 0;            // pieces of one cos_theta_o
   std::vector<Segment> segments;  // empty for isotropic functions
   std::vector<Axis> parameters = {};
   // Of one coordinate beyond theta_o: known to be 0 nowhere, so that who does not need it need not ask.
@@ -91,20 +92,26 @@ struct PackedAlbedo {
   }
   // phi_o in [0, azimuth_span].
   float at(float cos_theta_o, float phi_o) const {
+    const Row first = row_at(phi_o);
+    return max(cubic(pieces_at(cos_theta_o) + first.index, cubic_weights(first.t), cos_theta_o), 0.f);
+  }
+  // Where a cubic over the azimuth begins: the first of its four rows, and t in [0, 1].
+  struct Row {
+    std::size_t index;
+    float t;
+  };
+  Row row_at(float phi_o) const {
     const Segment& segment = segments.size() == 1 ? segments.front() : segment_at(phi_o);
     const float x = max((phi_o - segment.phi_o) * segment.rows_per_radian, 0.f);
-    const std::size_t k = std::min(std::size_t(x), std::size_t(segment.last));
-    const std::array<float, 4> weights = cubic_weights(x - float(k));
-    const AlbedoPiece* piece = pieces.data() + (segment.first + k) * row + lookup(cos_theta_o);
-    float sum = 0;
-    for (std::size_t i = 0; i < 4; ++i, piece += row)
-      sum += weights[i] * (piece->base + piece->slope * cos_theta_o);
-    return max(sum, 0.f);
+    const auto k = std::uint32_t(min(x, float(segment.last)));
+    return {segment.first + k, x - float(k)};
   }
+  // All rows of one cos_theta_o.
+  const AlbedoPiece* pieces_at(float cos_theta_o) const { return pieces.data() + row * lookup(cos_theta_o); }
   const Segment& segment_at(float phi_o) const;
   // Of families.
   float at(float cos_theta_o, float phi_o, const Coordinates& at) const {
-    const AlbedoPiece* column = pieces.data() + row * lookup(cos_theta_o);
+    const AlbedoPiece* column = pieces_at(cos_theta_o);
     if (parameters.size() > 1 || !segments.empty())
       return max(over_rows(column, cos_theta_o, phi_o, at), 0.f);
     const Place place = place_at(parameters.front(), at[0]);

@@ -15,6 +15,7 @@
 #include "reflectree/sampler/known/cosine_lookup.hpp"
 #include "reflectree/sampler/known/parameter.hpp"
 #include "reflectree/sampler/known/partition.hpp"
+#include "reflectree/sampler/known/viewer_frame.hpp"
 
 namespace reflectree {
 
@@ -24,8 +25,8 @@ class SlabTree {
   // Coordinate 0 is theta_o; phi_o, radians, where it is known, coordinate 1; parameters follow.
   explicit SlabTree(const Partition& partition, const std::vector<KnownParameter>& parameters = {});
   bool empty() const { return grid_.empty(); }
-  // others: all coordinates but theta_o, by their place in the partition from 1 on; parameters as they were
-  // given, without a logarithm. Borders belong to the upper slab.
+  // others: all coordinates but theta_o, by their place in the partition from 1 on; phi_o by its azimuth_key,
+  // parameters as they were given, without a logarithm. Borders belong to the upper slab.
   std::size_t operator()(float cos_theta_o, const float* others) const {
     std::size_t cell = cosines_(cos_theta_o);
     for (std::size_t a = 0; a < others_; ++a) cell += axes_[a](others[a]) * axes_[a].stride;

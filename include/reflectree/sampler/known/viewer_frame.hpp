@@ -38,4 +38,45 @@ REFLECTREE_INLINE Direction turn(Direction w, float cosine, float sine) {
   return {w.x * cosine - w.y * sine, w.x * sine + w.y * cosine, w.z};
 }
 
+// A viewer's direction along the surface in the frame of the axis, folded, and the way back: y turned around by
+// the sign bit of `side`, then a turn by the angle of a cosine and a sine.
+template <class T>
+struct FoldedViewer {
+  T x, y, cosine, sine, side;
+};
+// Of floats or lanes; by sign bits, since branches would be coin tosses.
+template <class T>
+REFLECTREE_INLINE FoldedViewer<T> fold_viewer(ViewerSymmetry symmetry, T x, T y, T cosine, T sine) {
+  T u = x * cosine + y * sine, v = y * cosine - x * sine;
+  T half_turn(0), side(0);  // by sign bits; -0 is 0
+  switch (symmetry) {
+    case ViewerSymmetry::two_planes:  // mirroring x is mirroring y and half a turn
+      half_turn = u + T(0), side = flip_sign(v, half_turn) + T(0);
+      u = abs(u), v = abs(v);
+      break;
+    case ViewerSymmetry::one_plane:
+      side = v + T(0), v = abs(v);
+      break;
+    case ViewerSymmetry::half_turn:
+      half_turn = v + T(0), u = flip_sign(u, half_turn), v = abs(v);
+      break;
+    default:
+      break;
+  }
+  return {u, v, flip_sign(cosine, half_turn), flip_sign(sine, half_turn), side};
+}
+
+// What ascends with the azimuth and takes no arctangent: from 0 to 4 around, equal steps along the square
+// |x| + |y| = 1.
+template <class T>
+REFLECTREE_INLINE T azimuth_key(ViewerSymmetry symmetry, T x, T y) {
+  const T a = abs(x), b = abs(y), q = b / max(a + b, T(1e-37f));
+  if (symmetry == ViewerSymmetry::two_planes) return q;
+  x = x + T(0), y = y + T(0);  // -0 is 0
+  const T upper = by_sign(x, q, T(2) - q);
+  return by_sign(y, upper, T(4) - upper);
+}
+// Of an azimuth in [0, 2 pi], radians; up to 4.
+float azimuth_key(float phi_o);
+
 }  // namespace reflectree
