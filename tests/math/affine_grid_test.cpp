@@ -28,7 +28,7 @@ Grid<d> random_grid(Pcg32& u) {
   std::size_t size = 1;
   for (std::size_t a = 0; a < d; ++a) {
     GridAxis& axis = grid.axes[a];
-    axis.count = 1 + int(u() % 9);
+    axis.count = 1 + int(u() % (u() % 3 == 0 ? 40 : 9));
     const auto kind = u() % 3;
     axis.periodic = kind == 1;
     if (kind == 2) {
@@ -94,7 +94,7 @@ bool holds(const AffineForm& form, std::array<double, 2> e, double value) {
 }
 
 struct Count {
-  std::size_t missed = 0, with_slopes = 0;
+  std::size_t missed = 0, with_slopes = 0, by_ranges = 0;
 };
 // Of values at points the forms that do not hold them.
 template <std::size_t d, class Tamper>
@@ -103,7 +103,7 @@ Count look_ups(int boxes, const Tamper& tamper) {
   Count count;
   for (int i = 0; i < boxes; ++i) {
     const Grid<d> grid = random_grid<d>(u);
-    const float width = std::exp2(-10 * to_unit_float(u()));
+    const float width = std::exp2(3 - 13 * to_unit_float(u()));
     const AffineForm x = AffineForm::variable(0, 0, double(width)),
                      y = AffineForm::variable(1, 0, double(width));
     std::array<Coordinate, d> coordinate;
@@ -121,12 +121,18 @@ Count look_ups(int boxes, const Tamper& tamper) {
     const GridRanges<d, Grid<d>> ranges(counts, grid);
     AffineForm form = AffineForm::anything_in(ranges.over(pieces.first(), pieces.last()));
     form.range = {form.range.lo - 15 * share, form.range.hi + 15 * share};
+    const auto nodes = [&](const std::array<int, d>& first, const std::array<int, d>& last) {
+      return ranges.over(first, last);
+    };
+    const AffineForm own = pieces.interpolated_by_ranges(nodes, share);
+    EXPECT_LE(own.range.hi, form.range.hi + 1e-3);
+    EXPECT_GE(own.range.lo, form.range.lo - 1e-3);
     if (pieces.are_few()) {
-      const AffineForm own = pieces.interpolated(grid, share);
-      EXPECT_LE(own.range.hi, form.range.hi + 1e-3);
-      EXPECT_GE(own.range.lo, form.range.lo - 1e-3);
-      form = own;
+      EXPECT_EQ(pieces.interpolated(grid, share).range, own.range);
+    } else {
+      ++count.by_ranges;
     }
+    form = own;
     count.with_slopes += form.slope[0] != 0;
     form = tamper(form);
     for (int k = 0; k < 8; ++k) {
@@ -150,6 +156,7 @@ TEST(AffineGrid, HoldsWhatIsInterpolated) {
   EXPECT_EQ(two.missed, 0U);
   EXPECT_EQ(three.missed, 0U);
   EXPECT_GT(three.with_slopes, 2000U);
+  EXPECT_GT(three.by_ranges, 50U);
 }
 
 TEST(AffineGridTwin, WrongFormsAreFound) {

@@ -51,17 +51,30 @@ class GridPieces {
   // a periodic axis they go on from the beginning.
   const Node& first() const { return first_; }
   const Node& last() const { return last_; }
-  // Whether there are so few pieces that interpolated() looks at each.
-  bool are_few() const { return few_; }
+  // Whether there are so few pieces that each is looked at. Along an axis that has more, the range of the
+  // nodes stands for each of them.
+  bool are_few() const {
+    return std::none_of(many_.begin(), many_.end(), [](bool many) { return many; });
+  }
 
-  // Of the function that is multilinear between the nodes and constant beyond them; for few pieces only.
-  // value(node), an array of indices, returns a float. The program's interpolation may err by `share` of the
-  // largest node that it touches.
+  // Of the function that is multilinear between the nodes and constant beyond them. nodes(first, last)
+  // returns the RealInterval of the nodes of a box, most often of one. The program's interpolation may err by
+  // `share` of the largest node that it touches.
+  template <class Nodes>
+  AffineForm interpolated_by_ranges(const Nodes& nodes, double share) const;
+  // The same for few pieces; value(node) returns a float.
   template <class Value>
-  AffineForm interpolated(const Value& value, double share) const;
+  AffineForm interpolated(const Value& value, double share) const {
+    return interpolated_by_ranges(
+        [&](const Node& node, const Node&) {
+          const double v = double(value(node));
+          return RealInterval(v, v);
+        },
+        share);
+  }
 
  private:
-  static constexpr int most = 8;  // places along one axis
+  static constexpr int most = 16;  // places along one axis
   struct Place {
     double x, fraction;
     int low, high;
@@ -70,26 +83,24 @@ class GridPieces {
   void cut(std::size_t a) {
     const GridAxis& axis = axes_[a];
     const RealInterval x = at_[a].range;
-    count_[a] = 0;
-    if (!(x.lo >= -1e6 && x.hi <= 1e6)) {  // nothing is known of it
-      first_[a] = 0, last_[a] = axis.count - 1, few_ = false;
-      return;
-    }
+    const auto give_up = [&](int first, int last) {
+      if (axis.periodic && last - first >= axis.count) first = 0, last = axis.count - 1;
+      first_[a] = first, last_[a] = last;
+      many_[a] = true, count_[a] = 1;
+      place_[a][0] = {0, 0, first, first};
+    };
+    if (!(x.lo >= -1e6 && x.hi <= 1e6)) return give_up(0, axis.count - 1);  // nothing is known of it
     const int begin = axis.beyond(x.lo);
+    const int first = axis.periodic ? begin - 1 : axis.node(begin - 1);
+    const int end = axis.beyond(x.hi);
+    if (end - begin > most - 2) return give_up(first, axis.periodic ? end : axis.node(end));
     int i = begin;
     add(a, x.lo, i);
-    for (; (axis.periodic || i < axis.count) && axis.place(i) < x.hi; ++i) {
-      if (count_[a] + 1 < most) {
-        place_[a][std::size_t(count_[a]++)] = {axis.place(i), 0, axis.node(i), axis.node(i)};
-      } else {
-        few_ = false;
-        if (axis.periodic && i - begin > axis.count) break;
-      }
-    }
+    for (; (axis.periodic || i < axis.count) && axis.place(i) < x.hi; ++i)
+      place_[a][std::size_t(count_[a]++)] = {axis.place(i), 0, axis.node(i), axis.node(i)};
     if (x.hi > x.lo) add(a, x.hi, i);
-    first_[a] = begin - 1, last_[a] = i;
-    if (!axis.periodic) first_[a] = axis.node(first_[a]), last_[a] = axis.node(last_[a]);
-    if (axis.periodic && last_[a] - first_[a] >= axis.count) first_[a] = 0, last_[a] = axis.count - 1;
+    first_[a] = first, last_[a] = axis.periodic ? i : axis.node(i);
+    if (axis.periodic && i - first >= axis.count) first_[a] = 0, last_[a] = axis.count - 1;
   }
   // A place between nodes i - 1 and i.
   void add(std::size_t a, double x, int i) {
@@ -102,24 +113,25 @@ class GridPieces {
   }
 
   // The function where places at[a] meet.
-  template <class Value>
-  double corner(const std::array<int, d>& at, const Value& value, double& largest) const {
-    double sum = 0;
+  template <class Nodes>
+  RealInterval corner(const std::array<int, d>& at, const Nodes& nodes, double& largest) const {
+    double lo = 0, hi = 0;
     for (std::size_t bits = 0; bits < (std::size_t(1) << d); ++bits) {
       double weight = 1;
-      Node node{};
+      Node first{}, last{};
       for (std::size_t a = 0; a < d; ++a) {
         const Place& p = place_[a][std::size_t(at[a])];
         const bool high = (bits >> a & 1U) != 0;
         weight *= high ? p.fraction : 1 - p.fraction;
-        node[a] = high ? p.high : p.low;
+        first[a] = high ? p.high : p.low;
+        last[a] = many_[a] ? last_[a] : first[a];
       }
       if (weight == 0) continue;
-      const double v = double(value(node));
-      largest = std::max(largest, std::abs(v));
-      sum += weight * v;
+      const RealInterval v = nodes(first, last);
+      largest = std::max(largest, v.magnitude());
+      lo += weight * v.lo, hi += weight * v.hi;
     }
-    return sum;
+    return {lo, hi};
   }
 
   std::array<GridAxis, d> axes_;
@@ -127,12 +139,12 @@ class GridPieces {
   std::array<std::array<Place, most>, d> place_;
   std::array<int, d> count_{};
   Node first_{}, last_{};
-  bool few_ = true;
+  std::array<bool, d> many_{};
 };
 
 template <std::size_t d>
-template <class Value>
-AffineForm GridPieces<d>::interpolated(const Value& value, double share) const {
+template <class Nodes>
+AffineForm GridPieces<d>::interpolated_by_ranges(const Nodes& nodes, double share) const {
   constexpr std::size_t corners = std::size_t(1) << d;
   double largest = 0;
   // Slopes: along each axis the mean rise of the box's edges.
@@ -140,11 +152,11 @@ AffineForm GridPieces<d>::interpolated(const Value& value, double share) const {
   for (std::size_t bits = 0; bits < corners; ++bits) {
     std::array<int, d> at{};
     for (std::size_t a = 0; a < d; ++a) at[a] = (bits >> a & 1U) != 0 ? count_[a] - 1 : 0;
-    const double v = corner(at, value, largest);
+    const double v = corner(at, nodes, largest).middle();
     for (std::size_t a = 0; a < d; ++a) {
       const double width = at_[a].range.hi - at_[a].range.lo;
-      if (width > 0 && at_[a].error < detail::infinity)
-        alpha[a] += (at[a] > 0 ? v : -v) / (width * 0.5 * double(corners));
+      if (width > 0 && !many_[a] && at_[a].error < detail::infinity)
+        alpha[a] += ((bits >> a & 1U) != 0 ? v : -v) / (width * 0.5 * double(corners));
     }
   }
   for (double& s : alpha) {
@@ -153,10 +165,10 @@ AffineForm GridPieces<d>::interpolated(const Value& value, double share) const {
   RealInterval offset{detail::infinity, -detail::infinity}, range = offset;
   std::array<int, d> at{};
   for (bool more = true; more;) {
-    const double v = corner(at, value, largest);
-    double rest = v;
-    for (std::size_t a = 0; a < d; ++a) rest -= alpha[a] * place_[a][std::size_t(at[a])].x;
-    offset = hull(offset, RealInterval(rest, rest)), range = hull(range, RealInterval(v, v));
+    const RealInterval v = corner(at, nodes, largest);
+    double line = 0;
+    for (std::size_t a = 0; a < d; ++a) line += alpha[a] * place_[a][std::size_t(at[a])].x;
+    offset = hull(offset, RealInterval(v.lo - line, v.hi - line)), range = hull(range, v);
     more = false;
     for (std::size_t a = 0; a < d && !more; ++a) {
       more = ++at[a] < count_[a];
@@ -165,7 +177,9 @@ AffineForm GridPieces<d>::interpolated(const Value& value, double share) const {
   }
   // The doubles here err by less than 2^-46 of the largest term.
   double size = largest;
-  for (std::size_t a = 0; a < d; ++a) size += std::abs(alpha[a]) * at_[a].range.magnitude();
+  for (std::size_t a = 0; a < d; ++a) {
+    if (alpha[a] != 0) size += std::abs(alpha[a]) * at_[a].range.magnitude();
+  }
   const double slack = share * largest + size * 0x1p-46,
                slack_of_values = share * largest + largest * 0x1p-46;
   return linear_enclosure(at_, alpha, {offset.lo - slack, offset.hi + slack},
@@ -220,7 +234,7 @@ class GridRanges {
       end[a] = n - 1, begin[a] = 0, last[a] -= n;
       return hull(over(first, end), over(begin, last));
     }
-    constexpr std::int64_t most = 128;  // nodes or blocks to look at
+    constexpr std::int64_t most = 256;  // nodes or blocks to look at
     std::size_t level = 0;
     while (volume(first, last) > most && level < levels_.size()) {
       ++level;
