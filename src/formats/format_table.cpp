@@ -6,6 +6,7 @@
 #include "format_facts.hpp"
 #include "klems.hpp"
 #include "reflectree/brdf/material/material.hpp"
+#include "reflectree/brdf/models/enclosed_fits.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/file_kind.hpp"
 #include "reflectree/formats/merl.hpp"
@@ -42,7 +43,7 @@ std::vector<std::string> merl_lookups(ByteView, const std::string&) { return {"n
 AnyBrdf read_merl_material(ByteView bytes, const std::string& path, const std::string& member) {
   HalfAngleTable table = read_merl(bytes, path, merl_lookup(path, member));
   table.name = file_text(path, member);
-  return table;
+  return enclosed(std::move(table));
 }
 
 std::vector<std::string> table_rows(ByteView bytes, const std::string& path) {
@@ -61,9 +62,9 @@ AnyBrdf read_table_row(ByteView bytes, const std::string& path, const std::strin
     case TableModel::neural:
       return make_neural(table, row, name);
     case TableModel::sgd:
-      return make_sgd(table, row, name);
+      return Enclosed<Sgd>(make_sgd(table, row, name));
     case TableModel::abc:
-      return make_abc(table, row, name);
+      return Enclosed<AbcMicrofacet>(make_abc(table, row, name));
   }
   throw Error("no model for its columns", path, "see the documentation for what is read");
 }

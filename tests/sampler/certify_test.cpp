@@ -6,6 +6,7 @@
 
 #include "functions.hpp"
 #include "reflectree/brdf/material/mixture.hpp"
+#include "reflectree/brdf/tables/half_angle_table.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/sampler/build.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
@@ -165,6 +166,83 @@ TEST(Certify, CancelLeavesTheDataAlone) {
   EXPECT_THROW(certify(data, f, {}, host), Cancelled);
   EXPECT_EQ(data, before);
   EXPECT_THROW(certify(data, f, {.tolerance = 0}), Error);
+}
+
+// Functions that bound themselves, in the three ways that there are.
+struct Chalk {
+  float operator()(Direction wo, Direction wi) const { return 0.2f + 0.1f * wo.z * wi.z; }
+  BrdfTraits traits() const {
+    BrdfTraits traits;
+    traits.isotropic_by_formula = true;
+    return traits;
+  }
+};
+struct BoundedChalk : Chalk {
+  float scale = 1;
+  float bound(const DirectionCell& cell) const {
+    return scale * (0.2f + 0.1001f * float(cell.wo.z.hi * cell.wi.z.hi));
+  }
+};
+struct EnclosedChalk : Chalk {
+  RealInterval bound(const DirectionCell& cell) const {
+    return RealInterval(0.2f) + RealInterval(0.0999, 0.1001) * (cell.wo.z * cell.wi.z);
+  }
+};
+struct SteepChalk : Chalk {
+  double constant = 0.101;
+  double lipschitz() const { return constant; }
+};
+TEST(Certify, OwnBoundsAreDetectedAndProve) {
+  static_assert(BoundedBrdf<BoundedChalk> && BoundedBrdf<EnclosedChalk> && LipschitzBrdf<SteepChalk>);
+  static_assert(!BoundedBrdf<Chalk> && !LipschitzBrdf<Chalk>);
+  EXPECT_NE(no_proof(Chalk()), "");
+  for (const AnyBrdf& f : {AnyBrdf(BoundedChalk()), AnyBrdf(EnclosedChalk()), AnyBrdf(SteepChalk())}) {
+    SamplerData data = build(f);
+    const SamplerData before = data;
+    certify(data, f);
+    EXPECT_TRUE(all_certified(data));
+    EXPECT_LE(data.report.expected_trials, 1.25f);
+    EXPECT_LE(largest_share(data, f, 100000, 3), 1);
+    EXPECT_EQ(build(Chalk()).exact, before.exact) << "an own bound changes no build";
+  }
+}
+// The twin: bounds that are contradicted by values at points.
+TEST(CertifyTwin, OwnBoundsThatLieAreFound) {
+  BoundedChalk low;
+  low.scale = 0.97f;
+  SteepChalk flat;
+  flat.constant = 0.02;
+  for (const AnyBrdf& f : {AnyBrdf(low), AnyBrdf(flat)}) {
+    SamplerData data = build(f);
+    const SamplerData before = data;
+    try {
+      certify(data, f);
+      ADD_FAILURE() << "a bound that lies was believed";
+    } catch (const Error& error) {
+      EXPECT_NE(error.wrong().find("does not hold"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(data, before);
+  }
+}
+
+// Tables: both look-ups, as exactly the floats that are sampled. Cells that are constant differ by 4 % at most.
+AnyBrdf small_table(TableLookup lookup) {
+  HalfAngleTable table;
+  table.n_h = 3, table.n_d = 2, table.n_p = 2, table.lookup = lookup;
+  const float rough = lookup == TableLookup::linear ? 0.1f : 0.01f;
+  for (int i = 0; i < table.n_h * table.n_d * table.n_p * 3; ++i)
+    table.rgb.push_back(0.25f + rough * float(i * 7 % 5) / 4);
+  return enclosed(table);
+}
+TEST(Certify, TablesOfBothLookUps) {
+  for (const TableLookup lookup : {TableLookup::linear, TableLookup::nearest}) {
+    const AnyBrdf f = small_table(lookup);
+    SamplerData data = build(f);
+    const Certification c = certify(data, f, {.tolerance = 0.05, .trials = 16});
+    EXPECT_EQ(c.proved_leaves, c.leaves);
+    EXPECT_TRUE(all_certified(data));
+    EXPECT_LE(largest_share(data, f, 200000, 3), 1);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include "../brdf/random_models.hpp"
 #include "reflectree/brdf/enclosure.hpp"
+#include "reflectree/brdf/models/enclosed_fits.hpp"
+#include "reflectree/brdf/tables/half_angle_table.hpp"
 #include "reflectree/sampler/square/enclosed_map.hpp"
 
 namespace reflectree {
@@ -234,6 +236,113 @@ TEST(GrazingEnclosureTwin, WrongFormsAreFound) {
                                 return f;
                               }),
             0U);
+}
+
+// The published fits: parameters as they are fitted, whose masking is about to vanish at grazing.
+Sgd random_sgd(Pcg32& bits) {
+  Sgd model;
+  for (SgdChannel& c : model.channels) {
+    const auto in = [&](double lo, double hi) { return float(lo + uniform(bits) * (hi - lo)); };
+    c.kd = in(0, 0.2), c.ks = in(0, 1), c.alpha = std::exp(in(-6, 0)), c.p = in(0.2, 2), c.kappa = in(1, 50);
+    c.f0 = in(0, 2), c.f1 = in(-0.5, 1), c.lambda = in(0.5, 4), c.k = in(1, 40), c.theta_0 = in(-0.5, 0.5);
+    // c (pi/2 - theta_0)^k = log(1 + 1 / lambda) would be 0 at grazing.
+    c.log_c = std::log(std::log1p(1 / c.lambda)) - c.k * std::log(0.5f * pi - c.theta_0) + in(-1e-5, 1e-5);
+  }
+  return model;
+}
+AbcMicrofacet random_abc(Pcg32& bits) {
+  AbcMicrofacet model;
+  const float a = float(100 * uniform(bits));
+  model.kd = {0.1f, 0.1f, float(uniform(bits))}, model.a = {a, a, a};
+  model.b = float(std::exp(12 * uniform(bits))), model.c = float(0.3 + 2 * uniform(bits));
+  model.ior = float(1 + 2 * uniform(bits));
+  return model;
+}
+TEST(FitEnclosure, HoldsItsValues) {
+  Pcg32 bits(21);
+  std::size_t finite = 0, boxes = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Sgd sgd = random_sgd(bits);
+    const AbcMicrofacet abc = random_abc(bits);
+    const auto a = compare(sgd, sgd, bits, 35);
+    const auto b = compare(abc, abc, bits, 35);
+    EXPECT_EQ(a.missed, 0U);
+    EXPECT_EQ(b.missed, 0U);
+    finite += a.finite + b.finite, boxes += a.boxes + b.boxes;
+  }
+  EXPECT_GT(finite, boxes / 2);
+}
+TEST(FitEnclosureTwin, OfAnotherFunctionIsFound) {
+  Pcg32 bits(22);
+  const Sgd sgd = random_sgd(bits);
+  const AbcMicrofacet abc = random_abc(bits);
+  EXPECT_GT(compare(
+                sgd, [&](const auto& g) { return 1.01f * sgd(g); }, bits, 1400)
+                .missed,
+            0U);
+  EXPECT_GT(compare(
+                abc, [&](const auto& g) { return 1.01f * abc(g); }, bits, 1400)
+                .missed,
+            0U);
+}
+
+// Towards grazing, where masking and cosine vanish together, the form knows their quotient.
+TEST(FitEnclosure, OfMaskingKnowsWhatIsLeftAtGrazing) {
+  SgdChannel c{0, 1, 0.1f, 1, 1, 1, 0, 2.6f, -16.f, 47.783f, 0.205635f};
+  c.log_c = std::log(std::log1p(1 / c.lambda)) - c.k * std::log(0.5f * pi - c.theta_0);
+  const AffineForm z = AffineForm::variable(0, 1e-4, 1.05e-4);
+  const AffineForm share =
+      sgd_masking(c, sgd_elevation({sqrt(AffineForm(1) - sqr(z)), AffineForm(0), z})) / z;
+  EXPECT_LT(share.range.hi, 1.02 * share.range.lo);
+}
+
+// Half-angle tables, of both look-ups and of both periods, some entries of which were not measured.
+HalfAngleTable random_table(Pcg32& bits, TableLookup lookup, bool reciprocal, bool gaps) {
+  HalfAngleTable table;
+  table.n_h = 9, table.n_d = 7, table.n_p = 12;
+  table.reciprocal = reciprocal, table.lookup = lookup;
+  for (int i = 0; i < table.n_h * table.n_d * table.n_p * 3; ++i)
+    table.rgb.push_back(gaps && uniform(bits) < 0.05 ? -1.f : float(uniform(bits)));
+  return table;
+}
+struct EnclosedTable {
+  std::shared_ptr<const BrdfEnclosure> enclosure;
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const { return (*enclosure)(g); }
+};
+template <class Share>
+std::size_t missed_in_tables(const Share& share) {
+  std::size_t missed = 0, finite = 0;
+  Pcg32 bits(23);
+  for (int i = 0; i < 24; ++i) {
+    const auto lookup = i % 2 ? TableLookup::linear : TableLookup::nearest;
+    const HalfAngleTable table = random_table(bits, lookup, i & 2, i & 4);
+    const EnclosedTable enclosure{enclosed(table).traits().enclosure};
+    const auto seen = compare(
+        enclosure, [&](const auto& g) { return share(table(g)); }, bits, 210);
+    missed += seen.missed, finite += seen.finite;
+  }
+  EXPECT_GT(finite, 1000U);
+  return missed;
+}
+TEST(TableEnclosure, HoldsItsValues) {
+  EXPECT_EQ(missed_in_tables([](Rgb v) { return v; }), 0U);
+}
+TEST(TableEnclosureTwin, OfAnotherTableIsFound) {
+  EXPECT_GT(missed_in_tables([](Rgb v) { return 1.01f * v; }), 0U);
+}
+// In one cell a linear table is known by its slopes, a constant one exactly.
+TEST(TableEnclosure, SmallBoxesGiveSharpBounds) {
+  Pcg32 bits(24);
+  const auto error = [](const HalfAngleTable& table, double width) {
+    const EnclosedTable enclosure{enclosed(table).traits().enclosure};
+    const Domain domain{DomainKind::half_vector, Symmetry::mirror, 1};
+    const DomainPointT<AffineForm> lift =
+        lifted_box(domain, {{0.7, 0.31, 0.42}, {0.7 + width, 0.31 + width, 0.42 + width}});
+    return enclosure(lift.geometry).g.error;
+  };
+  const HalfAngleTable linear = random_table(bits, TableLookup::linear, true, false);
+  EXPECT_LT(error(linear, 0.002), 0.3 * error(linear, 0.004) + 1e-5);
+  EXPECT_LT(error(random_table(bits, TableLookup::nearest, true, false), 1e-4), 1e-6);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reflectree/brdf/brdf.hpp"
+#include "reflectree/brdf/own_bound.hpp"
 #include "reflectree/error.hpp"
 
 namespace reflectree {
@@ -69,6 +70,7 @@ class AnyBrdf {
     F f;
     explicit Model(F function) : f(std::move(function)) {
       this->traits = traits_of(f);
+      if (!this->traits.enclosure) this->traits.enclosure = detail::own_enclosure(f);
       if (this->traits.channels < 1 || this->traits.channels > max_channels) {
         throw Error("the BRDF has " + std::to_string(this->traits.channels) + " channels", this->traits.name,
                     "give it 1 to " + std::to_string(max_channels));

@@ -47,7 +47,9 @@ ModelInfo baked_entry() {
   const BakedTable& table = baked_tables()[index];
   ModelInfo info{table.name, ModelClass::approximate, table.summary, "computed", {}, {}, {}, {}};
   info.fault = [](std::span<const Rgb>) -> const char* { return nullptr; };
-  info.make = [](std::span<const Rgb>) -> AnyBrdf { return bake_table(baked_tables()[index].name); };
+  info.make = [](std::span<const Rgb>) -> AnyBrdf {
+    return enclosed(bake_table(baked_tables()[index].name));
+  };
   info.make_family = [](std::span<const Rgb>, std::span<const VariedValues>,
                         const std::vector<ParameterRange>&, const std::string& name) -> AnyFamily {
     throw Error("a table has no parameters", name, "give ranges to a model");

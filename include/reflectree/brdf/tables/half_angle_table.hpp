@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reflectree/brdf/brdf.hpp"
+#include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/math/half_angle.hpp"
 
 namespace reflectree {
@@ -40,6 +40,9 @@ struct HalfAngleTable {
   Rgb unmeasured(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
 };
+
+// With the enclosure of the table: of all entries that a look-up may touch over a box of directions.
+AnyBrdf enclosed(HalfAngleTable table);
 
 // Where a cell is baked: its centre, pulled towards theta_d = 0 where the centre has a direction below
 // the horizon, so that cells which the horizon cuts hold a value of the part above. phi_h = 0.
