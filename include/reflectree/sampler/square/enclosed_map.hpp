@@ -73,7 +73,15 @@ inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point
 // and 8 u along x and y.
 inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<AffineForm>& wo,
                                          const Vec2<AffineForm>& p) {
-  if (domain.kind != DomainKind::back_vector) return with_unit_vectors(detail::lift_point(domain, wo, p));
+  if (domain.kind != DomainKind::back_vector) {
+    DomainPointT<AffineForm> out = with_unit_vectors(detail::lift_point(domain, wo, p));
+    if (domain.kind == DomainKind::half_vector) {
+      const Vec2<AffineForm> half_azimuth = cos_sin_half(p.x);
+      // The map keeps wh from the normal; its azimuth is a vector whose length errs by 6e-7.
+      out.geometry.azimuth_h = {widened(half_azimuth.y, 1e-6), widened(half_azimuth.x, 1e-6)};
+    }
+    return out;
+  }
   Domain of_halves = domain;
   of_halves.kind = DomainKind::half_vector;
   const DomainPointT<AffineForm> turned =
