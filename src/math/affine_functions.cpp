@@ -121,8 +121,44 @@ AffineForm cos(const AffineForm& the_x) {
                   cos(settled.form().range));
 }
 AffineForm acos(const AffineForm& x) { return only_range(acos(x.range), library); }
+
+namespace {
+// Between lines through the extremes of atan t - alpha t: at the ends, and where 1 / (1 + t^2) is alpha.
+AffineForm arc_tangent(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const AffineForm& x = settled.form();
+  const double a = x.range.lo, b = x.range.hi;
+  const RealInterval range{std::atan(a), std::atan(b)};
+  if (!std::isfinite(a) || !std::isfinite(b)) return only_range(range, library);
+  const double alpha =
+      b - a > 1e-6 * (1 + std::abs(a)) ? (range.hi - range.lo) / (b - a) : 1 / (1 + 0.25 * sqr(a + b));
+  const double turn = std::sqrt(std::max(1 / alpha - 1, 0.));
+  double low = detail::infinity, high = -detail::infinity;
+  for (const double t : {a, b, std::clamp(turn, a, b), std::clamp(-turn, a, b)}) {
+    const double off = std::atan(t) - alpha * t;
+    low = std::min(low, off), high = std::max(high, off);
+  }
+  // An extreme that rounding moves is missed by less than doubles round.
+  return between_lines(x, alpha, low, high, range, library);
+}
+}  // namespace
+
+// By the ratio that is less than 1, or has a divisor that does not hold 0.
 AffineForm atan2(const AffineForm& y, const AffineForm& x) {
-  return only_range(atan2(y.range, x.range), library);
+  const RealInterval range = atan2(y.range, x.range);
+  const bool y_may = y.range.lo > 0 || y.range.hi < 0;
+  const bool by_x = x.range.lo > 0 && (!y_may || std::abs(x.range.middle()) >= std::abs(y.range.middle()));
+  if (!by_x && !y_may) return only_range(range, library);
+  AffineForm out;
+  if (by_x) {
+    out = arc_tangent(y / x);
+  } else {
+    const AffineForm right_angle(0.5 * pi_v<double>);
+    out = (y.range.lo > 0 ? right_angle : -right_angle) - arc_tangent(x / y);
+  }
+  const RealInterval known = intersection(out.range, rounded_range(range, library));
+  if (known.lo <= known.hi) out.range = known;
+  return out;
 }
 
 }  // namespace reflectree
