@@ -12,18 +12,21 @@
 namespace reflectree {
 
 // The geometry over a box has more where the map knows it (enclosed_map.hpp): the half vector of wo and of wi
-// mirrored about the normal, and its cosine with wo; cosine and sine of the azimuth of wh, up to 1e-6 of
-// themselves, which wh does not tell where it meets the normal.
+// mirrored about the normal, and its cosine with wo; the azimuth of wh, which wh does not tell where it meets the
+// normal: cosine and sine up to 1e-6 of themselves, and radians.
 struct BackVector {
   Vec3<AffineForm> wh;
   AffineForm cos_theta_d;
+};
+struct HalfAzimuth {
+  AffineForm cosine, sine, angle;
 };
 template <>
 struct ShadingGeometry<AffineForm> {
   Vec3<AffineForm> wo, wi, wh;
   AffineForm cos_theta_o, cos_theta_i, cos_theta_h, cos_theta_d;
   std::optional<BackVector> back = std::nullopt;
-  std::optional<Vec2<AffineForm>> azimuth_h = std::nullopt;
+  std::optional<HalfAzimuth> azimuth_h = std::nullopt;
 };
 
 // wo + wi over a box, as in shading_geometry.hpp. Where the two may point apart the float formula takes out what
@@ -76,7 +79,7 @@ inline ShadingGeometry<AffineForm> back_geometry(const ShadingGeometry<AffineFor
 inline ShadingGeometry<AffineForm> mirrored_in_plane(ShadingGeometry<AffineForm> g) {
   g.wi.y = -g.wi.y, g.wh.y = -g.wh.y;
   if (g.back) g.back->wh.y = -g.back->wh.y;
-  if (g.azimuth_h) g.azimuth_h->y = -g.azimuth_h->y;
+  if (g.azimuth_h) g.azimuth_h->sine = -g.azimuth_h->sine, g.azimuth_h->angle = -g.azimuth_h->angle;
   return g;
 }
 

@@ -17,8 +17,9 @@ inline HalfFrame half_frame(const ShadingGeometry<AffineForm>& g) {
   HalfFrame out{sqrt(sin2_theta(g.wh)), {}};
   AffineForm &sin_h = out.sin_theta_h, &x = out.azimuth.x, &y = out.azimuth.y;
   if (g.azimuth_h) {
-    x = widened(g.azimuth_h->x, share), y = widened(g.azimuth_h->y, share);
-    sin_h = narrower(sin_h, widened(abs(g.azimuth_h->x * g.wh.x + g.azimuth_h->y * g.wh.y), share));
+    x = widened(g.azimuth_h->cosine, share), y = widened(g.azimuth_h->sine, share);
+    const AffineForm along = g.azimuth_h->cosine * g.wh.x + g.azimuth_h->sine * g.wh.y;
+    sin_h = narrower(sin_h, widened(abs(along), share));
   } else if (sin_h.range.lo > 1e-12) {
     x = widened(g.wh.x / sin_h, share), y = widened(g.wh.y / sin_h, share);
   } else {
@@ -37,11 +38,13 @@ inline HalfFrame half_frame(const ShadingGeometry<AffineForm>& g) {
 
 // wo is wi mirrored in wh, and so d.x and d.y are those of wo with the other sign: wo + wi has less than
 // 4 length_tolerance that is not along wh (sum_of_directions, in enclosure.hpp; elsewhere 20 u), of which half
-// enters, and the float formula rounds by less than 8 u. wo.y = 0.
+// enters, and the float formula rounds by less than 8 u.
 inline Difference<AffineForm> difference_vector(const ShadingGeometry<AffineForm>& g, const HalfFrame& frame) {
   const AffineForm off = AffineForm::anything_in({-3 * length_tolerance, 3 * length_tolerance});
-  const AffineForm x = frame.sin_theta_h * g.wo.z - g.cos_theta_h * frame.azimuth.x * g.wo.x;
-  return {frame.sin_theta_h, {x + off, frame.azimuth.y * g.wo.x + off, g.cos_theta_d}};
+  const AffineForm &cosine = frame.azimuth.x, &sine = frame.azimuth.y;
+  const AffineForm x =
+      frame.sin_theta_h * g.wo.z - g.cos_theta_h * (cosine * g.wo.x + sine * g.wo.y);
+  return {frame.sin_theta_h, {x + off, sine * g.wo.x - cosine * g.wo.y + off, g.cos_theta_d}};
 }
 
 // f(frame), forms of three channels, where wh is about the normal and its azimuth may be any: arc by arc, so that

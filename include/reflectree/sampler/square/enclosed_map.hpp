@@ -18,7 +18,9 @@ inline Vec2<AffineForm> cos_sin_half(const AffineForm& x) {
   };
   constexpr double off = 4e-7;
   const AffineForm a = abs(x), sine = widened(sine_of(a), off);
-  return {sine_of(AffineForm(1) - a) + AffineForm::anything_in({-off, off}), x.range.hi > 0 ? sine : -sine};
+  AffineForm cosine = sine_of(AffineForm(1) - a) + AffineForm::anything_in({-off, off});
+  cosine.range.lo = std::max(cosine.range.lo, 0.);  // the polynomial ends at 3e-8
+  return {cosine, x.range.hi > 0 ? sine : -sine};
 }
 
 // The maps use p and c as their ratio alone, d = p / (p + (c - p) y), and what that rounds is relative to p. So
@@ -77,8 +79,11 @@ inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<Affine
     DomainPointT<AffineForm> out = with_unit_vectors(detail::lift_point(domain, wo, p));
     if (domain.kind == DomainKind::half_vector) {
       const Vec2<AffineForm> half_azimuth = cos_sin_half(p.x);
-      // The map keeps wh from the normal; its azimuth is a vector whose length errs by 6e-7.
-      out.geometry.azimuth_h = {widened(half_azimuth.y, 1e-6), widened(half_azimuth.x, 1e-6)};
+      // The map keeps wh from the normal; the length of its azimuth's vector errs by 6e-7, the angle by as much.
+      constexpr double off = 1e-6;
+      AffineForm angle = AffineForm(0.5 * pi_v<double>) * (AffineForm(1) - p.x) + AffineForm::anything_in({-off, off});
+      angle.range = intersection(angle.range, {0, pi_v<double> + off});
+      out.geometry.azimuth_h = {widened(half_azimuth.y, off), widened(half_azimuth.x, off), angle};
     }
     return out;
   }
