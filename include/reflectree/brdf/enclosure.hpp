@@ -105,6 +105,10 @@ class BrdfEnclosure {
  public:
   virtual ~BrdfEnclosure() = default;
   virtual RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const = 0;
+  // f cos theta_i, up to 16 roundings, of functions that divide by the cosine.
+  virtual std::optional<RgbT<AffineForm>> times_cosine(const ShadingGeometry<AffineForm>&) const {
+    return std::nullopt;
+  }
   // Whether the function returns the same, to the last bit, for wi and its image in the plane of wo, where wo
   // has no y: then one of the two is looked at.
   virtual bool is_mirror_symmetric() const { return false; }

@@ -13,6 +13,8 @@ namespace {
 constexpr double u = 0x1p-24;
 // The polynomials of fast_functions.hpp.
 constexpr double angle_share = 4e-7;
+// Smaller ones count as this.
+constexpr float least_cosine = 1e-6f;
 
 AffineForm within(AffineForm x, double lo, double hi) {
   x.range = {std::clamp(x.range.lo, lo, hi), std::clamp(x.range.hi, lo, hi)};
@@ -233,6 +235,15 @@ RgbT<AffineForm> RglEnclosure::colour(const AffineForm& theta_o, const Vec2<Affi
 }
 
 RgbT<AffineForm> RglEnclosure::operator()(const ShadingGeometry<AffineForm>& g) const {
+  return value(g, AffineForm(1) / max(AffineForm(least_cosine), g.cos_theta_i));
+}
+
+std::optional<RgbT<AffineForm>> RglEnclosure::times_cosine(const ShadingGeometry<AffineForm>& g) const {
+  const double lo = g.cos_theta_i.range.lo / double(least_cosine);
+  return value(g, lo > 1 ? AffineForm(1) : AffineForm::anything_in({std::max(lo * (1 - 2 * u), 0.), 1}));
+}
+
+RgbT<AffineForm> RglEnclosure::value(const ShadingGeometry<AffineForm>& g, const AffineForm& factor) const {
   const AffineForm sin_o = g.wo.y.range.magnitude() == 0 ? g.wo.x : sqrt(sin2_theta(g.wo));
   const AffineForm theta_o = polar_angle(sin_o, g.cos_theta_o);
   const AffineForm sigma =
@@ -244,7 +255,7 @@ RgbT<AffineForm> RglEnclosure::operator()(const ShadingGeometry<AffineForm>& g) 
                                        located(of_phi, table_.warp_height_));
   const AffineForm zero(0.f);
   const AffineForm normals = max(interpolated(table_.ndf_, located(of_theta, int(table_.ndf_.size()))), zero);
-  const AffineForm scale = normals / (AffineForm(4.f) * sigma * max(AffineForm(1e-6f), g.cos_theta_i));
+  const AffineForm scale = factor * (normals / (AffineForm(4.f) * sigma));
   const RgbT<AffineForm> f = colour(theta_o, at);
   return {max(scale * f.r, zero), max(scale * f.g, zero), max(scale * f.b, zero)};
 }

@@ -8,6 +8,15 @@
 
 namespace reflectree {
 
+// projected_area / cos theta_i, too, up to the same roundings: some maps and functions divide what the other
+// multiplies, and cos theta_i is noise at the rim.
+template <>
+struct DomainPointT<AffineForm> {
+  ShadingGeometry<AffineForm> geometry;
+  AffineForm projected_area;
+  std::optional<AffineForm> area_by_cosine = std::nullopt;
+};
+
 // The polynomials of fast_functions.hpp are 5e-8 off and round by less than 3e-7; that of the sine has the
 // argument as a factor, so that both are relative. On either side of x = 0 sine and cosine take their place.
 inline Vec2<AffineForm> cos_sin_half(const AffineForm& x) {
@@ -85,6 +94,7 @@ inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<Affine
       angle.range = intersection(angle.range, {0, pi_v<double> + off});
       out.geometry.azimuth_h = {widened(half_azimuth.y, off), widened(half_azimuth.x, off), angle};
     }
+    if (domain.kind == DomainKind::equal_area) out.area_by_cosine = AffineForm(2 * pi);
     return out;
   }
   Domain of_halves = domain;
