@@ -151,6 +151,47 @@ AffineForm enclosed(const std::array<const Parts*, 3>& parts, const std::array<A
 
 }  // namespace
 
+// Many cells, as where the azimuth of wh may be any. Between nodes of theta_o and y the place along x is a quotient
+// of two means with the same weights, and so between the quotients at the nodes; all masses ascend.
+Vec2<AffineForm> RglEnclosure::unwarped_range(const AffineForm& theta_o, RealInterval x, RealInterval y) const {
+  const RglTable& table = table_;
+  const int width = table.warp_width_, height = table.warp_height_, pairs = int(table.theta_o_.size()) - 1;
+  const auto cell = [](double at, int cells) { return std::clamp(int(at), 0, cells - 1); };
+  const int first_y = cell(y.lo, height - 1), last_y = cell(y.hi, height - 1);
+  RealInterval sx{1, 0}, sy{1, 0};
+  for (int pair = 0; pair < pairs; ++pair) {
+    const double from = double(table.theta_o_[std::size_t(pair)]), to = double(table.theta_o_[std::size_t(pair) + 1]);
+    if ((to < theta_o.range.lo && pair + 1 < pairs) || (from > theta_o.range.hi && pair > 0)) continue;
+    for (const std::size_t side : {0U, 1U}) {
+      const std::size_t slice = std::size_t(pair) * std::size_t(height);
+      const auto below = [&](double at) {
+        const int j = cell(at, height - 1);
+        const RglTable::WarpRow* r = table.rows_ + slice + std::size_t(j);
+        const double b = at - j, m0 = double(r[0].mass[side]), m1 = double(r[1].mass[side]);
+        return double(r[0].cdf[side]) + b * (m0 + 0.5 * b * (m1 - m0));
+      };
+      sy = hull(sy, {below(y.lo), below(y.hi)});
+      for (int j = first_y; j <= last_y + 1; ++j) {
+        const std::size_t row = slice + std::size_t(j);
+        const auto mass = double(table.rows_[row].mass[side]);
+        const auto along = [&](double at) {
+          const int i = cell(at, width - 1);
+          const RglTable::WarpNode* n = table.warp_ + row * std::size_t(width) + std::size_t(i);
+          const double a = at - i, p0 = double(n[0].pdf[side]), p1 = double(n[1].pdf[side]);
+          return double(n[0].cdf[side]) + a * (p0 + 0.5 * a * (p1 - p0));
+        };
+        if (!(mass > 0)) return {AffineForm::anything_in({0, 1}), AffineForm::anything_in({0, 1})};
+        sx = hull(sx, {along(x.lo) / mass, along(x.hi) / mass});
+      }
+    }
+  }
+  constexpr double share = 64 * u;
+  const auto rounded = [](RealInterval r) {
+    return within(AffineForm::anything_in({r.lo * (1 - share), r.hi * (1 + share)}), 0, 2);
+  };
+  return {rounded(sx), rounded(sy)};
+}
+
 Vec2<AffineForm> RglEnclosure::unwarped(const AffineForm& theta_o, const AffineForm& x,
                                         const AffineForm& y) const {
   const RglTable& table = table_;
@@ -160,7 +201,7 @@ Vec2<AffineForm> RglEnclosure::unwarped(const AffineForm& theta_o, const AffineF
   const Parts of_theta(theta_o.range, int(table.theta_o_.size()),
                        [&](int i) { return double(table.theta_o_[std::size_t(i)]); });
   const Parts of_x(x.range, width, unit), of_y(y.range, height, unit);
-  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few()) return {any, any};
+  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few()) return unwarped_range(theta_o, x.range, y.range);
   using Where = std::array<const Part*, 3>;
   using Places = std::array<double, 3>;
   constexpr double share = 32 * u;
@@ -208,9 +249,15 @@ Vec2<AffineForm> RglEnclosure::unwarped(const AffineForm& theta_o, const AffineF
 RgbT<AffineForm> RglEnclosure::colour(const AffineForm& theta_o, const Vec2<AffineForm>& at) const {
   const int nodes = int(table_.theta_o_.size()), width = table_.colour_width_, height = table_.colour_height_;
   const GridAxis of_theta{nodes, false, table_.theta_o_};
-  const GridPieces<3> pieces({of_theta, GridAxis{width}, GridAxis{height}},
-                             {theta_o, located(at.x, width), located(at.y, height)});
-  using Node = GridPieces<3>::Node;
+  // Of a hundred places along an axis, if there are few along the others.
+  using Pieces = GridPieces<3, 100>;
+  const Pieces pieces({of_theta, GridAxis{width}, GridAxis{height}},
+                      {theta_o, located(at.x, width), located(at.y, height)});
+  using Node = Pieces::Node;
+  const Node &first = pieces.first(), &last = pieces.last();
+  int volume = 1;
+  for (std::size_t a = 0; a < 3; ++a) volume *= last[a] - first[a] + 1;
+  const bool few = pieces.are_few() && volume < 500;
   const auto of = [&](int channel) {
     const auto value = [&, channel](const Node& n) {
       const int pair = std::min(n[0], nodes - 2);
@@ -218,9 +265,8 @@ RgbT<AffineForm> RglEnclosure::colour(const AffineForm& theta_o, const Vec2<Affi
       return table_.colour_[row * std::size_t(width) + std::size_t(n[1])].rgb[n[0] - pair][channel];
     };
     constexpr double share = 32 * u;
-    if (pieces.are_few()) return pieces.interpolated(value, share);
+    if (few) return pieces.interpolated(value, share);
     RealInterval range{detail::infinity, -detail::infinity};
-    const Node &first = pieces.first(), &last = pieces.last();
     for (int i = first[0]; i <= last[0]; ++i) {
       for (int j = first[1]; j <= last[1]; ++j) {
         for (int k = first[2]; k <= last[2]; ++k) {

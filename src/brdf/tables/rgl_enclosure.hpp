@@ -18,6 +18,7 @@ class RglEnclosure final : public BrdfEnclosure {
   RgbT<AffineForm> value(const ShadingGeometry<AffineForm>& g, const AffineForm& factor) const;
   // Where V^-1 leads, each in [0, 1].
   Vec2<AffineForm> unwarped(const AffineForm& theta_o, const AffineForm& x, const AffineForm& y) const;
+  Vec2<AffineForm> unwarped_range(const AffineForm& theta_o, RealInterval x, RealInterval y) const;
   RgbT<AffineForm> colour(const AffineForm& theta_o, const Vec2<AffineForm>& at) const;
 
   RglTable table_;
