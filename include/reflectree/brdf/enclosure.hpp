@@ -29,6 +29,14 @@ struct ShadingGeometry<AffineForm> {
   std::optional<HalfAzimuth> azimuth_h = std::nullopt;
 };
 
+// The azimuth that the map told, while g is in the frame in which it told it: a geometry that was turned or mirrored
+// since has none.
+inline const HalfAzimuth* known_azimuth(const ShadingGeometry<AffineForm>& g) {
+  if (!g.azimuth_h || g.wo.y.range.magnitude() > 0 || g.wo.x.range.lo < 0) return nullptr;
+  const RealInterval sine = g.azimuth_h->sine.range, y = g.wi.y.range;
+  return (sine.lo >= 0 && y.lo >= 0) || (sine.hi <= 0 && y.hi <= 0) ? &*g.azimuth_h : nullptr;
+}
+
 // wo + wi over a box, as in shading_geometry.hpp. Where the two may point apart the float formula takes out what
 // the sum has along the difference m: h - k m, k = (|wo|^2 - |wi|^2) / |m|^2. Both lengths are 1 up to
 // length_tolerance, and |m|^2 > 2 there: the correction, with the roundings of its own, is less than

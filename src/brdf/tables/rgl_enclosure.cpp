@@ -3,43 +3,31 @@
 
 #include <array>
 
+#include "enclosed_angles.hpp"
 #include "reflectree/brdf/tables/enclosed_difference.hpp"
 #include "reflectree/math/affine_grid.hpp"
 
 namespace reflectree {
 
+using namespace enclosed_angles;
+
 namespace {
 
 constexpr double u = 0x1p-24;
-// The polynomials of fast_functions.hpp.
-constexpr double angle_share = 4e-7;
 // Smaller ones count as this.
 constexpr float least_cosine = 1e-6f;
 
-AffineForm within(AffineForm x, double lo, double hi) {
-  x.range = {std::clamp(x.range.lo, lo, hi), std::clamp(x.range.hi, lo, hi)};
-  return x;
-}
-
-AffineForm polar_angle(const AffineForm& sine, const AffineForm& cosine) {
-  return within(widened(atan2(sine, cosine), angle_share), 0, 0.5 * pi_v<double> * (1 + angle_share));
-}
 AffineForm elevation_to_u(const AffineForm& theta) { return sqrt(theta * AffineForm(2.f / pi)); }
 // A position on a grid over [0, 1], in cells.
 AffineForm located(const AffineForm& x, int nodes) {
   return within(within(x, 0, 1) * AffineForm(float(nodes - 1)), 0, nodes - 1);
 }
 
-// Of a direction on one side of the plane of wo: y >= 0.
-AffineForm angle_above(const AffineForm& y, const AffineForm& x) {
-  const AffineForm angle = x.range.hi < 0 ? AffineForm(pi_v<double>) - atan2(y, -x) : atan2(y, x);
-  return within(angle, 0, pi_v<double>);
-}
 // The azimuth of wh relative to that of wo. In the plane of wo y = 0 the sign of wh.y is that of wi.y, and no map
 // returns wi.y = 0 beyond the pole (the cosine of cos_sin_half is positive).
 AffineForm relative_azimuth(const ShadingGeometry<AffineForm>& g) {
   const bool plane = g.wo.y.range.magnitude() == 0;
-  if (plane && g.azimuth_h) return g.azimuth_h->angle;
+  if (const HalfAzimuth* known = known_azimuth(g)) return known->angle;
   AffineForm y = g.wh.y, x = g.wh.x;
   if (!plane) y = g.wo.x * g.wh.y - g.wo.y * g.wh.x, x = g.wo.x * g.wh.x + g.wo.y * g.wh.y;
   if (plane && g.wi.y.range.lo >= 0) return angle_above(within(y, 0, 2), x);

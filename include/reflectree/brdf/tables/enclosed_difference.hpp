@@ -16,9 +16,9 @@ inline HalfFrame half_frame(const ShadingGeometry<AffineForm>& g) {
   constexpr double share = 8 * 0x1p-24;  // of itself, what both formulas round
   HalfFrame out{sqrt(sin2_theta(g.wh)), {}};
   AffineForm &sin_h = out.sin_theta_h, &x = out.azimuth.x, &y = out.azimuth.y;
-  if (g.azimuth_h) {
-    x = widened(g.azimuth_h->cosine, share), y = widened(g.azimuth_h->sine, share);
-    const AffineForm along = g.azimuth_h->cosine * g.wh.x + g.azimuth_h->sine * g.wh.y;
+  if (const HalfAzimuth* known = known_azimuth(g)) {
+    x = widened(known->cosine, share), y = widened(known->sine, share);
+    const AffineForm along = known->cosine * g.wh.x + known->sine * g.wh.y;
     sin_h = narrower(sin_h, widened(abs(along), share));
   } else if (sin_h.range.lo > 1e-12) {
     x = widened(g.wh.x / sin_h, share), y = widened(g.wh.y / sin_h, share);
