@@ -101,6 +101,31 @@ AffineForm sqr(const AffineForm& x) {
   return out;
 }
 
+// A sum of n products in floats errs by less than (n + 1) u of the sum of their sizes (Higham 2002, "Accuracy and
+// Stability of Numerical Algorithms", 3.1, with room for the square of u).
+AffineForm weighted_sum(float first, std::span<const float> weights, std::span<const AffineForm> x) {
+  AffineForm out;
+  out.middle = double(first);
+  double size = std::abs(double(first)), error = 0, lo = double(first), hi = lo, terms = 1;
+  bool known = true;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const double w = double(weights[k]);
+    if (w == 0) continue;
+    const Settled settled(x[k]);
+    const AffineForm& form = settled.form();
+    known = known && is_known(form);
+    out.middle += w * form.middle, error += std::abs(w) * form.error;
+    for (std::size_t i = 0; i < n; ++i) out.slope[i] += w * form.slope[i];
+    lo += w * (w > 0 ? form.range.lo : form.range.hi), hi += w * (w > 0 ? form.range.hi : form.range.lo);
+    size += std::abs(w) * form.range.magnitude(), terms += 1;
+  }
+  const double lost = size * (terms + 1) * rounded + terms * flushed, slack = size * terms * own;
+  const RealInterval range{lo - slack - lost, hi + slack + lost};
+  if (!known || !(size < largest_float)) return AffineForm::anything_in(RealInterval::whole());
+  complete(out, radius_of(out.slope), error + slack + lost, range);
+  return out;
+}
+
 AffineForm abs(const AffineForm& the_x) {
   if (the_x.range.lo >= 0) return the_x;
   const Settled settled(the_x);

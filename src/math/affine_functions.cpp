@@ -62,6 +62,20 @@ AffineForm exp(const AffineForm& the_x) {
   return exponential({x.middle, x.slope, x.error}, x.range, range, library);
 }
 
+// Convex: what lies below its negative.
+AffineForm expm1(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const AffineForm& x = settled.form();
+  const double a = x.range.lo, b = x.range.hi;
+  const RealInterval range = {std::max(detail::well_below(std::expm1(a)), -1.),
+                              detail::well_above(std::expm1(b))};
+  if (!std::isfinite(a) || !(b < 85)) return only_range(range, library);
+  const auto f = [](double v) { return Curve{-std::expm1(v), -std::exp(v)}; };
+  const double alpha =
+      b - a > 1e-6 ? (std::expm1(b) - std::expm1(a)) / (b - a) : std::exp(0.5 * (a + b));
+  return -concave(x, f, std::clamp(std::log(std::max(alpha, 1e-300)), a, b), -alpha, -range, library);
+}
+
 AffineForm log(const AffineForm& x) {
   const RealInterval range = log(x.range);
   const double a = x.range.lo, b = x.range.hi;

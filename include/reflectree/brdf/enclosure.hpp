@@ -11,18 +11,31 @@
 
 namespace reflectree {
 
-// The geometry over a box has one thing more where the map knows it (enclosed_map.hpp): the half vector of wo and
-// of wi mirrored about the normal, and its cosine with wo.
+// The geometry over a box has more where the map knows it (enclosed_map.hpp): the half vector of wo and of wi
+// mirrored about the normal, and its cosine with wo; the azimuth of wh, which wh does not tell where it meets the
+// normal: cosine and sine up to 1e-6 of themselves, and radians.
 struct BackVector {
   Vec3<AffineForm> wh;
   AffineForm cos_theta_d;
+};
+struct HalfAzimuth {
+  AffineForm cosine, sine, angle;
 };
 template <>
 struct ShadingGeometry<AffineForm> {
   Vec3<AffineForm> wo, wi, wh;
   AffineForm cos_theta_o, cos_theta_i, cos_theta_h, cos_theta_d;
   std::optional<BackVector> back = std::nullopt;
+  std::optional<HalfAzimuth> azimuth_h = std::nullopt;
 };
+
+// The azimuth that the map told, while g is in the frame in which it told it: a geometry that was turned or mirrored
+// since has none.
+inline const HalfAzimuth* known_azimuth(const ShadingGeometry<AffineForm>& g) {
+  if (!g.azimuth_h || g.wo.y.range.magnitude() > 0 || g.wo.x.range.lo < 0) return nullptr;
+  const RealInterval sine = g.azimuth_h->sine.range, y = g.wi.y.range;
+  return (sine.lo >= 0 && y.lo >= 0) || (sine.hi <= 0 && y.hi <= 0) ? &*g.azimuth_h : nullptr;
+}
 
 // wo + wi over a box, as in shading_geometry.hpp. Where the two may point apart the float formula takes out what
 // the sum has along the difference m: h - k m, k = (|wo|^2 - |wi|^2) / |m|^2. Both lengths are 1 up to
@@ -74,6 +87,7 @@ inline ShadingGeometry<AffineForm> back_geometry(const ShadingGeometry<AffineFor
 inline ShadingGeometry<AffineForm> mirrored_in_plane(ShadingGeometry<AffineForm> g) {
   g.wi.y = -g.wi.y, g.wh.y = -g.wh.y;
   if (g.back) g.back->wh.y = -g.back->wh.y;
+  if (g.azimuth_h) g.azimuth_h->sine = -g.azimuth_h->sine, g.azimuth_h->angle = -g.azimuth_h->angle;
   return g;
 }
 
@@ -99,6 +113,10 @@ class BrdfEnclosure {
  public:
   virtual ~BrdfEnclosure() = default;
   virtual RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const = 0;
+  // f cos theta_i, up to 16 roundings, of functions that divide by the cosine.
+  virtual std::optional<RgbT<AffineForm>> times_cosine(const ShadingGeometry<AffineForm>&) const {
+    return std::nullopt;
+  }
   // Whether the function returns the same, to the last bit, for wi and its image in the plane of wo, where wo
   // has no y: then one of the two is looked at.
   virtual bool is_mirror_symmetric() const { return false; }

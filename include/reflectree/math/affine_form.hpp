@@ -13,6 +13,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 #include "reflectree/math/direction.hpp"
 #include "reflectree/math/interval.hpp"
@@ -64,6 +65,7 @@ AffineForm abs(const AffineForm& x);
 AffineForm min(const AffineForm& a, const AffineForm& b);
 AffineForm max(const AffineForm& a, const AffineForm& b);
 AffineForm exp(const AffineForm& x);
+AffineForm expm1(const AffineForm& x);
 AffineForm log(const AffineForm& x);
 AffineForm log1p(const AffineForm& x);
 AffineForm pow(const AffineForm& x, const AffineForm& y);  // x >= 0
@@ -76,6 +78,8 @@ AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const Aff
 // x where s has no sign. A box in which s is 0 at a border and negative inside takes -x.
 AffineForm flip_sign(const AffineForm& x, const AffineForm& s);
 
+// first + weights . x, summed in any order, products fused or not.
+AffineForm weighted_sum(float first, std::span<const float> weights, std::span<const AffineForm> x);
 // Of two forms of the same number the better parts.
 AffineForm narrower(const AffineForm& a, const AffineForm& b);
 // x as it stands, or more or less by up to a share of itself.

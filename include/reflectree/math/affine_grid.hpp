@@ -35,8 +35,9 @@ struct GridAxis {
 AffineForm linear_enclosure(std::span<const AffineForm> x, std::span<const double> alpha, RealInterval offset,
                             RealInterval range);
 
-// The pieces into which the nodes cut a box of coordinates, to be used for all channels of a table.
-template <std::size_t d>
+// The pieces into which the nodes cut a box of coordinates, to be used for all channels of a table. most: places
+// along one axis.
+template <std::size_t d, int most = 16>
 class GridPieces {
  public:
   using Node = std::array<int, d>;
@@ -74,7 +75,6 @@ class GridPieces {
   }
 
  private:
-  static constexpr int most = 16;  // places along one axis
   struct Place {
     double x, fraction;
     int low, high;
@@ -142,9 +142,9 @@ class GridPieces {
   std::array<bool, d> many_{};
 };
 
-template <std::size_t d>
+template <std::size_t d, int most>
 template <class Nodes>
-AffineForm GridPieces<d>::interpolated_by_ranges(const Nodes& nodes, double share) const {
+AffineForm GridPieces<d, most>::interpolated_by_ranges(const Nodes& nodes, double share) const {
   constexpr std::size_t corners = std::size_t(1) << d;
   double largest = 0;
   // Slopes: along each axis the mean rise of the box's edges.

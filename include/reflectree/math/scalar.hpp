@@ -68,6 +68,7 @@ using std::asin;
 using std::atan2;
 using std::cos;
 using std::exp;
+using std::expm1;
 using std::isfinite;
 using std::log;
 using std::log1p;

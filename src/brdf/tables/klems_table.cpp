@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/math/fast_functions.hpp"
 
 namespace reflectree {
@@ -27,6 +28,27 @@ int KlemsBasis::patch_of(Direction w) const {
   return first_[ring] + (k < 0 ? k + n : k >= n ? k - n : k);
 }
 
+KlemsBasis::Touched KlemsBasis::patches_of(const Vec3<AffineForm>& w) const {
+  const RealInterval z = w.z.range, x = w.x.range, y = w.y.range;
+  // In turns; angle_of and what it is multiplied by round by less than 1e-6. Away from where angles leap, on the
+  // negative x axis, or turned by half a turn.
+  const bool behind = x.hi < 0;
+  const RealInterval angle = behind ? atan2(-y, -x) : atan2(y, x);
+  const double off = 1e-6, turn = 2 * pi_v<double>, start = behind ? 0.5 : 0;
+  const RealInterval turns{angle.lo / turn + start - off, angle.hi / turn + start + off};
+  Touched out;
+  for (std::size_t ring = 0; ring < patches_.size(); ++ring) {
+    const bool above = z.hi > double(cos_theta_[ring + 1]), below = ring == 0 || z.lo <= double(cos_theta_[ring]);
+    if (!above || !below) continue;
+    const int n = patches_[ring];
+    const int first = int(std::floor(turns.lo * n + 0.5)), last = int(std::floor(turns.hi * n + 0.5));
+    for (int k = first; k <= std::min(last, first + n - 1); ++k)
+      out.patches.push_back(first_[ring] + (k % n + n) % n);
+  }
+  out.beyond = z.lo <= double(cos_theta_.back());
+  return out;
+}
+
 std::vector<float> KlemsBasis::azimuth_borders(std::size_t ring) const {
   std::vector<float> borders;
   const int n = patches_[ring];
@@ -34,9 +56,15 @@ std::vector<float> KlemsBasis::azimuth_borders(std::size_t ring) const {
   return borders;
 }
 
-double KlemsBasis::projected_solid_angle(int patch) const {
+std::size_t KlemsBasis::ring_of(int patch) const {
   std::size_t ring = patches_.size() - 1;
   while (patch < first_[ring]) --ring;
+  return ring;
+}
+int KlemsBasis::first_of_ring(int patch) const { return first_[ring_of(patch)]; }
+
+double KlemsBasis::projected_solid_angle(int patch) const {
+  const std::size_t ring = ring_of(patch);
   return pi_v<double> * (sqr(cos(double(theta_[ring]))) - sqr(cos(double(theta_[ring + 1])))) /
          patches_[ring];
 }
@@ -49,10 +77,52 @@ float KlemsTable::operator()(const ShadingGeometry<float>& g) const {
   return value(in, out);
 }
 
+namespace {
+
+class KlemsEnclosure final : public BrdfEnclosure {
+ public:
+  explicit KlemsEnclosure(const KlemsTable& table) : table_(table) {}
+  // Constant over patches: nothing is lost by the range of those that are touched.
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
+    const bool through = table_.seen_through;
+    const KlemsBasis::Touched in =
+        table_.incident.patches_of({through ? g.wo.x : -g.wo.x, -g.wo.y, g.wo.z});
+    const KlemsBasis::Touched out =
+        table_.exiting.patches_of({through ? -g.wi.x : g.wi.x, g.wi.y, g.wi.z});
+    RealInterval range{detail::infinity, -detail::infinity};
+    if (in.beyond || out.beyond) range = {0, 0};
+    for (const int i : in.patches) {
+      for (const int k : out.patches) {
+        const auto v = double(table_.value(i, k));
+        range = hull(range, RealInterval(v, v));
+      }
+    }
+    const AffineForm v = range.lo == range.hi ? AffineForm(float(range.lo)) : AffineForm::anything_in(range);
+    return {v, v, v};
+  }
+  bool is_mirror_symmetric() const override { return table_.knows_rings_alone(); }
+
+ private:
+  KlemsTable table_;
+};
+
+}  // namespace
+
+bool KlemsTable::knows_rings_alone() const {
+  const auto first = [](const KlemsBasis& basis, int patch) { return basis.first_of_ring(patch); };
+  for (int in = 0; in < incident.size(); ++in) {
+    for (int out = 0; out < exiting.size(); ++out) {
+      if (value(in, out) != value(first(incident, in), first(exiting, out))) return false;
+    }
+  }
+  return true;
+}
+
 BrdfTraits KlemsTable::traits() const {
   BrdfTraits traits;
   traits.name = name, traits.channels = 1;
-  traits.isotropic = false;
+  traits.isotropic = traits.isotropic_by_formula = knows_rings_alone();
+  traits.enclosure = std::make_shared<KlemsEnclosure>(*this);
   const std::vector<float>& borders = incident.ring_borders();
   for (std::size_t i = 1; i < borders.size(); ++i) {
     if (i + 1 < borders.size() || borders[i] < 1.57f) traits.theta_o_knots.push_back(borders[i]);

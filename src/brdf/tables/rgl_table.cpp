@@ -6,6 +6,7 @@
 
 #include "reflectree/math/fast_functions.hpp"
 #include "reflectree/math/prefetch.hpp"
+#include "rgl_enclosure.hpp"
 #include "rgl_parts.hpp"
 
 namespace reflectree {
@@ -37,30 +38,33 @@ RglTable::RglTable(const RglFields& fields)
     sigma_.assign(2, 0.25f);
     ndf_.assign(2, 1.f);
   }
-  warp_.resize(pairs * warp_size);
-  rows_.resize(pairs * std::size_t(warp_height_));
-  colour_.resize(pairs * colour_size);
+  const auto tables = std::make_shared<Tables>();
+  tables->warp.resize(pairs * warp_size);
+  tables->rows.resize(pairs * std::size_t(warp_height_));
+  tables->colour.resize(pairs * colour_size);
   for (std::size_t t = 0; t < nodes; ++t) {
     const Slice slice = integrate(fields.vndf.data() + t * warp_size, warp_width_, warp_height_);
     const float* rgb = fields.rgb.data() + t * 3 * colour_size;
     const auto store = [&](std::size_t pair, std::size_t side) {
       for (std::size_t i = 0; i < warp_size; ++i) {
-        warp_[pair * warp_size + i].cdf[side] = float(slice.cdf[i]);
-        warp_[pair * warp_size + i].pdf[side] = float(slice.pdf[i]);
+        tables->warp[pair * warp_size + i].cdf[side] = float(slice.cdf[i]);
+        tables->warp[pair * warp_size + i].pdf[side] = float(slice.pdf[i]);
       }
       for (std::size_t y = 0; y < slice.row_mass.size(); ++y) {
-        rows_[pair * slice.row_mass.size() + y].cdf[side] = float(slice.row_cdf[y]);
-        rows_[pair * slice.row_mass.size() + y].mass[side] = float(slice.row_mass[y]);
+        tables->rows[pair * slice.row_mass.size() + y].cdf[side] = float(slice.row_cdf[y]);
+        tables->rows[pair * slice.row_mass.size() + y].mass[side] = float(slice.row_mass[y]);
       }
       for (std::size_t i = 0; i < colour_size; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
-          colour_[pair * colour_size + i].rgb[side][c] = rgb[c * colour_size + i];
+          tables->colour[pair * colour_size + i].rgb[side][c] = rgb[c * colour_size + i];
         }
       }
     };
     if (t < pairs) store(t, 0);  // the lower end of the pair that starts here
     if (t > 0) store(t - 1, 1);  // the upper end of the pair below
   }
+  warp_ = tables->warp.data(), rows_ = tables->rows.data(), colour_ = tables->colour.data();
+  tables_ = tables;
 }
 
 RglTable::Known RglTable::known(const ShadingGeometry<float>& g) const {
@@ -119,7 +123,7 @@ RglTable::InWarp RglTable::in_warp(const Known& of_wo, const ShadingGeometry<flo
   const float u = elevation_to_u(polar_angle(sin2_theta(g.wh), g.cos_theta_h));
   const GridPosition px = locate(u, warp_width_), py = locate(phi * (0.5f / pi) + 0.5f, warp_height_);
   const std::size_t row = of_wo.pair * std::size_t(warp_height_) + std::size_t(py.node);
-  return {warp_.data() + row * std::size_t(warp_width_) + std::size_t(px.node), rows_.data() + row,
+  return {warp_ + row * std::size_t(warp_width_) + std::size_t(px.node), rows_ + row,
           px.fraction, py.fraction, u};
 }
 
@@ -141,7 +145,7 @@ RglTable::InColour RglTable::in_colour(const Known& of_wo, const InWarp& at) con
 
   const GridPosition qx = locate(sx, colour_width_), qy = locate(sy, colour_height_);
   const std::size_t row = of_wo.pair * std::size_t(colour_height_) + std::size_t(qy.node);
-  return {colour_.data() + row * std::size_t(colour_width_) + std::size_t(qx.node), qx.fraction, qy.fraction};
+  return {colour_ + row * std::size_t(colour_width_) + std::size_t(qx.node), qx.fraction, qy.fraction};
 }
 
 // S, bilinear on the warped square.
@@ -167,6 +171,7 @@ BrdfTraits RglTable::traits() const {
   traits.isotropic_by_formula = true;
   traits.name = name;
   traits.theta_o_knots = theta_o_;
+  traits.enclosure = std::make_shared<RglEnclosure>(*this);
   // 1 / sigma is piecewise linear in u, in steps of less than a degree.
   traits.theta_o_factor = [sigma = sigma_](double theta_o) {
     return 1 / double(interpolate(sigma, elevation_to_u(float(theta_o))));

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "enclosed_angles.hpp"
+#include "reflectree/brdf/enclosure.hpp"
+#include "reflectree/math/affine_grid.hpp"
 #include "specular_albedo.hpp"
 
 namespace reflectree {
@@ -56,6 +59,82 @@ auto mix(const SpecularAxes& axes, const Corners& c, const std::vector<Entry>& e
   return sum;
 }
 
+// An isotropic table over boxes.
+template <class Value>
+class SpecularEnclosure final : public BrdfEnclosure {
+ public:
+  explicit SpecularEnclosure(const SpecularTable<Value>& table) : table_(table) {}
+
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
+    using namespace enclosed_angles;
+    const SpecularAxes& axes = table_.axes;
+    const bool plane = g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0;
+    const AffineForm sin_o = plane ? g.wo.x : sqrt(sin2_theta(g.wo));
+    AffineForm along = g.wi.x, y = g.wi.y;
+    if (!plane) {
+      const AffineForm any = AffineForm::anything_in({-1.0001, 1.0001});
+      const bool known = sin_o.range.lo > 1e-6;
+      const AffineForm cosine = known ? g.wo.x / sin_o : any, sine = known ? g.wo.y / sin_o : any;
+      along = cosine * g.wi.x + sine * g.wi.y, y = cosine * g.wi.y - sine * g.wi.x;
+    }
+    const AffineForm x = g.cos_theta_o * along + sin_o * g.wi.z, z = g.cos_theta_o * g.wi.z - sin_o * along;
+    const AffineForm radial = angle_above(sqrt(sqr(x) + sqr(y)), z);
+    using Pieces = GridPieces<3, 100>;
+    const auto axis = [](const std::vector<float>& nodes) { return GridAxis{int(nodes.size()), false, nodes}; };
+    const Pieces pieces({axis(axes.theta_o), axis(axes.azimuth), axis(axes.radial)},
+                        {polar_angle(sin_o, g.cos_theta_o), azimuth(y, x), radial});
+    return {channel(pieces, 0), channel(pieces, 1), channel(pieces, 2)};
+  }
+
+ private:
+  AffineForm azimuth(const AffineForm& y, const AffineForm& x) const {
+    using namespace enclosed_angles;
+    if (table_.axes.mirrored) return angle_above(abs(y), x);
+    // Where no direction of the box lies where the angle leaps.
+    const auto first = double(table_.axes.azimuth.front());
+    AffineForm angle = AffineForm::anything_in({-pi_v<double>, pi_v<double>});
+    if (y.range.lo >= 0) {
+      angle = angle_above(y, x);
+    } else if (y.range.hi <= 0) {
+      angle = -angle_above(-y, x);
+    } else if (x.range.lo > 0) {
+      angle = widened(atan2(y, x), angle_share);
+    }
+    constexpr double off = 1e-5;
+    const AffineForm slack = AffineForm::anything_in({-2e-6, 2e-6});
+    if (angle.range.lo > first + off && angle.range.hi < first + 2 * pi_v<double> - off) return angle + slack;
+    if (angle.range.hi < first - off && angle.range.lo > first - 2 * pi_v<double> + off)
+      return angle + AffineForm(2 * pi_v<double>) + slack;
+    return AffineForm::anything_in({first - off, first + 2 * pi_v<double> + off});
+  }
+  template <class Pieces>
+  AffineForm channel(const Pieces& pieces, int c) const {
+    const SpecularAxes& axes = table_.axes;
+    const auto value = [&](const std::array<int, 3>& i) {
+      const std::size_t row = std::size_t(i[0]) * axes.azimuth.size() + std::size_t(i[1]);
+      return channel_value(table_.values[row * axes.radial.size() + std::size_t(i[2])], c);
+    };
+    constexpr double share = 0x1p-19;
+    const auto &first = pieces.first(), &last = pieces.last();
+    int volume = 1;
+    for (std::size_t a = 0; a < 3; ++a) volume *= last[a] - first[a] + 1;
+    const AffineForm zero(0.f);
+    if (pieces.are_few() && volume < 500) return max(pieces.interpolated(value, share), zero);
+    RealInterval range{detail::infinity, -detail::infinity};
+    for (int i = first[0]; i <= last[0]; ++i) {
+      for (int j = first[1]; j <= last[1]; ++j) {
+        for (int k = first[2]; k <= last[2]; ++k) {
+          const auto v = double(value({i, j, k}));
+          range = hull(range, RealInterval(v, v));
+        }
+      }
+    }
+    return max(widened(AffineForm::anything_in(range), share), zero);
+  }
+
+  SpecularTable<Value> table_;
+};
+
 float clipped(float v) { return max(v, 0.f); }
 Rgb clipped(const Rgb& v) { return {max(v.r, 0.f), max(v.g, 0.f), max(v.b, 0.f)}; }
 
@@ -82,6 +161,7 @@ BrdfTraits SpecularTable<Value>::traits() const {
   traits.name = name;
   traits.isotropic = traits.isotropic_by_formula = axes.rotation.size() == 1;
   traits.theta_o_knots = axes.theta_o;
+  if (traits.isotropic) traits.enclosure = std::make_shared<SpecularEnclosure<Value>>(*this);
   if (!traits.isotropic) {
     AzimuthKnots all{pi / 2, {}};
     for (const float rotation : axes.rotation) all.phi_o.push_back(pi / 2 - rotation);

@@ -2,7 +2,6 @@
 #include "enclosed_field.hpp"
 
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/square/enclosed_map.hpp"
 
 namespace reflectree::detail {
 
@@ -80,8 +79,14 @@ AffineForm EnclosedField::albedo_over(const AffineForm& cosine) const {
   return linear_enclosure(cosine, alpha, wider(offset), wider(range));
 }
 
-AffineForm EnclosedField::target_over(const ShadingGeometry<AffineForm>& g, const AffineForm& area) const {
-  return reduced(packed_.target, (*enclosure_)(g), f_.channels()) * area;
+AffineForm EnclosedField::target_over(const DomainPointT<AffineForm>& point,
+                                      const ShadingGeometry<AffineForm>& g) const {
+  if (point.area_by_cosine) {
+    // The order of the products is another one: 32 roundings.
+    if (const auto f_cos = enclosure_->times_cosine(g))
+      return widened(reduced(packed_.target, *f_cos, f_.channels()) * *point.area_by_cosine, 0x1p-19);
+  }
+  return reduced(packed_.target, (*enclosure_)(g), f_.channels()) * point.projected_area;
 }
 
 Vec3<AffineForm> EnclosedField::viewer_over(double theta_lo, double theta_hi, CosineRange cosines) const {
@@ -110,10 +115,9 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
   const DomainPointT<AffineForm> lifted = lift_box(packed_.domain, wo, at.p);
-  EnclosedPoint out{target_over(lifted.geometry, lifted.projected_area), std::nullopt,
-                    albedo_over(wo.z) * at.height};
+  EnclosedPoint out{target_over(lifted, lifted.geometry), std::nullopt, albedo_over(wo.z) * at.height};
   if (packed_.domain.half() && !mirror_symmetric_) {
-    out.mirrored = target_over(mirrored_in_plane(lifted.geometry), lifted.projected_area);
+    out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry));
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
+#include "reflectree/sampler/square/enclosed_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree::detail {
@@ -63,7 +64,8 @@ class EnclosedField {
  private:
   Vec3<AffineForm> viewer_over(double theta_lo, double theta_hi, CosineRange cosines) const;
   AffineForm albedo_over(const AffineForm& cosine) const;
-  AffineForm target_over(const ShadingGeometry<AffineForm>& g, const AffineForm& projected_area) const;
+  // g: the point's geometry, or its image.
+  AffineForm target_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g) const;
 
   const AnyBrdf& f_;
   std::shared_ptr<const BrdfEnclosure> enclosure_;

@@ -24,6 +24,10 @@ class NeuralBrdf {
   Rgb operator()(const ShadingGeometry<float>& g) const;
   // The same before it is cut at 0.
   Rgb unclipped(const ShadingGeometry<float>& g) const;
+  // The layers, of scalars T: float or AffineForm. The second input, the sine of the half vector's azimuth,
+  // is always 0.
+  template <class T>
+  RgbT<T> layers(const T& sin_theta_h, const T& cos_theta_h, const Vec3<T>& d) const;
   BrdfTraits traits() const;
 
  private:

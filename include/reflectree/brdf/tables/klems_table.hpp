@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reflectree/brdf/brdf.hpp"
+#include "reflectree/math/affine_form.hpp"
 
 namespace reflectree {
 
@@ -21,6 +22,14 @@ class KlemsBasis {
   int size() const { return size_; }
   // The patch of a direction with z > 0, -1 beyond the last ring.
   int patch_of(Direction w) const;
+  // Of all directions of a box: patches that they may lie in, and whether some may lie beyond the last ring.
+  struct Touched {
+    std::vector<int> patches;
+    bool beyond = false;
+  };
+  Touched patches_of(const Vec3<AffineForm>& w) const;
+  // The first patch of the ring of a patch.
+  int first_of_ring(int patch) const;
   // In radians.
   const std::vector<float>& ring_borders() const { return theta_; }
   // Where patches of a ring meet, radians in [0, 2 pi); none where the ring is one patch.
@@ -29,6 +38,7 @@ class KlemsBasis {
   double projected_solid_angle(int patch) const;
 
  private:
+  std::size_t ring_of(int patch) const;
   std::vector<float> theta_, cos_theta_;  // one more than rings
   std::vector<int> patches_, first_;
   int size_ = 0;
@@ -46,6 +56,8 @@ struct KlemsTable {
   float value(int in, int out) const {
     return values[std::size_t(in) * std::size_t(exiting.size()) + std::size_t(out)];
   }
+  // Whether values are the same in all patches of a ring.
+  bool knows_rings_alone() const;
   float operator()(const ShadingGeometry<float>& g) const;
   BrdfTraits traits() const;
 };

@@ -8,6 +8,7 @@
 // first would brighten their neighbours.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -80,10 +81,18 @@ class RglTable {
   InColour in_colour(const Known& known, const InWarp& at) const;
   Rgb unclipped(const Known& known, float u, const InColour& at, float cos_theta_i) const;
 
+  friend class RglEnclosure;  // reads the same tables
+
+  struct Tables {
+    std::vector<WarpNode> warp;
+    std::vector<WarpRow> rows;
+    std::vector<ColourNode> colour;
+  };
   std::vector<float> theta_o_, sigma_, ndf_;
-  std::vector<WarpNode> warp_;  // [theta_o pair][v][u]
-  std::vector<WarpRow> rows_;   // [theta_o pair][v]
-  std::vector<ColourNode> colour_;
+  std::shared_ptr<const Tables> tables_;  // copies share it
+  const WarpNode* warp_;                  // [theta_o pair][v][u]
+  const WarpRow* rows_;                   // [theta_o pair][v]
+  const ColourNode* colour_;              // [theta_o pair][y][x]
   int warp_width_, warp_height_, colour_width_, colour_height_;
 };
 

@@ -8,6 +8,15 @@
 
 namespace reflectree {
 
+// projected_area / cos theta_i, too, up to the same roundings: some maps and functions divide what the other
+// multiplies, and cos theta_i is noise at the rim.
+template <>
+struct DomainPointT<AffineForm> {
+  ShadingGeometry<AffineForm> geometry;
+  AffineForm projected_area;
+  std::optional<AffineForm> area_by_cosine = std::nullopt;
+};
+
 // The polynomials of fast_functions.hpp are 5e-8 off and round by less than 3e-7; that of the sine has the
 // argument as a factor, so that both are relative. On either side of x = 0 sine and cosine take their place.
 inline Vec2<AffineForm> cos_sin_half(const AffineForm& x) {
@@ -18,7 +27,9 @@ inline Vec2<AffineForm> cos_sin_half(const AffineForm& x) {
   };
   constexpr double off = 4e-7;
   const AffineForm a = abs(x), sine = widened(sine_of(a), off);
-  return {sine_of(AffineForm(1) - a) + AffineForm::anything_in({-off, off}), x.range.hi > 0 ? sine : -sine};
+  AffineForm cosine = sine_of(AffineForm(1) - a) + AffineForm::anything_in({-off, off});
+  cosine.range.lo = std::max(cosine.range.lo, 0.);  // the polynomial ends at 3e-8
+  return {cosine, x.range.hi > 0 ? sine : -sine};
 }
 
 // The maps use p and c as their ratio alone, d = p / (p + (c - p) y), and what that rounds is relative to p. So
@@ -73,7 +84,19 @@ inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point
 // and 8 u along x and y.
 inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<AffineForm>& wo,
                                          const Vec2<AffineForm>& p) {
-  if (domain.kind != DomainKind::back_vector) return with_unit_vectors(detail::lift_point(domain, wo, p));
+  if (domain.kind != DomainKind::back_vector) {
+    DomainPointT<AffineForm> out = with_unit_vectors(detail::lift_point(domain, wo, p));
+    if (domain.kind == DomainKind::half_vector) {
+      const Vec2<AffineForm> half_azimuth = cos_sin_half(p.x);
+      // The map keeps wh from the normal; the length of its azimuth's vector errs by 6e-7, the angle by as much.
+      constexpr double off = 1e-6;
+      AffineForm angle = AffineForm(0.5 * pi_v<double>) * (AffineForm(1) - p.x) + AffineForm::anything_in({-off, off});
+      angle.range = intersection(angle.range, {0, pi_v<double> + off});
+      out.geometry.azimuth_h = {widened(half_azimuth.y, off), widened(half_azimuth.x, off), angle};
+    }
+    if (domain.kind == DomainKind::equal_area) out.area_by_cosine = AffineForm(2 * pi);
+    return out;
+  }
   Domain of_halves = domain;
   of_halves.kind = DomainKind::half_vector;
   const DomainPointT<AffineForm> turned =

@@ -36,6 +36,12 @@ REFLECTREE_INLINE T reflected_cosine(T twice, T cos_theta_o, const HalfVectorSta
   return twice - cos_theta_o;
 }
 
+// d(wi) = 4 (wo.wh) d(wh); dphi = pi/2 dx, dx dy = 4 d(share). Times cos theta_i, or 1.
+template <class T>
+REFLECTREE_INLINE T half_vector_area(T cosine, T wo_n, T cos2_theta_h, T tau, T d) {
+  return cosine * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (tau * d * d);
+}
+
 // azimuth: unit vector; side = -1: wo mirrored about the normal, for retro-reflective lobes.
 template <class T>
 REFLECTREE_INLINE DomainPointT<T> lift_half_vector(Vec3<T> wo, Vec2<T> azimuth, T y, float side) {
@@ -50,12 +56,14 @@ REFLECTREE_INLINE DomainPointT<T> lift_half_vector(Vec3<T> wo, Vec2<T> azimuth, 
   const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
   const Vec3<T> wi{twice * tau * azimuth.x - axis.x, twice * tau * azimuth.y,
                    max(reflected_cosine(twice, axis.z, star, y, d, cos2_theta_h), T(min_cos_theta_i))};
-  // d(wi) = 4 (wo.wh) d(wh); dphi = pi/2 dx, dx dy = 4 d(share).
-  const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (tau * d * d);
+  const T projected_area = half_vector_area(wi.z, wo_n, cos2_theta_h, tau, d);
   if (side < 0) return {shading_geometry(wo, wi), projected_area};
   const T cos_theta_h = sqrt(cos2_theta_h);
   const Vec3<T> wh{tau * azimuth.x * cos_theta_h, tau * azimuth.y * cos_theta_h, cos_theta_h};
-  return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
+  DomainPointT<T> out{{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
+  if constexpr (requires { out.area_by_cosine; })
+    out.area_by_cosine = half_vector_area(T(1), wo_n, cos2_theta_h, tau, d);
+  return out;
 }
 
 // The half vector of wi, and |y| of its place in the square.
