@@ -20,10 +20,11 @@
 namespace reflectree {
 
 struct AffineForm {
-  static constexpr std::size_t variables = 3;
+  // As many as a proof has unknowns at most: two coordinates of the square, two of the viewer, two parameters.
+  static constexpr std::size_t variables = 6;
   using Slopes = std::array<double, variables>;
 
-  // The values at e in [-1, 1]^3: middle + slope . e, up to `error`; all of them lie in `range`.
+  // The values at e in [-1, 1]^6: middle + slope . e, up to `error`; all of them lie in `range`.
   double middle = 0;
   Slopes slope{};
   double error = 0;  // infinite: the range alone is known
@@ -76,6 +77,8 @@ AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const Aff
 // x where s has no sign. A box in which s is 0 at a border and negative inside takes -x.
 AffineForm flip_sign(const AffineForm& x, const AffineForm& s);
 
+// What holds every number that one of two forms holds; narrow where both hold about the same.
+AffineForm either(const AffineForm& a, const AffineForm& b);
 // Of two forms of the same number the better parts.
 AffineForm narrower(const AffineForm& a, const AffineForm& b);
 // x as it stands, or more or less by up to a share of itself.

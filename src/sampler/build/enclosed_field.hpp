@@ -5,27 +5,17 @@
 #include <array>
 #include <optional>
 
-#include "reflectree/brdf/enclosure.hpp"
-#include "reflectree/sampler/packed_sampler.hpp"
-#include "reflectree/sampler/sampler_data.hpp"
+#include "enclosed_viewer.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree::detail {
 
-// theta_o in radians, then shares of the leaf's cell along x and y.
+// theta_o in radians, shares of the leaf's cell along x and y, then what else is unknown of the viewer: its azimuth,
+// the coordinates of a family's parameters. As many as the field says; all others are 0.
+inline constexpr std::size_t most_axes = AffineForm::variables;
+using ProofPoint = std::array<double, most_axes>;
 struct ProofBox {
-  static constexpr std::size_t axes = 3;
-  std::array<double, axes> lo{}, hi{};
-};
-using ProofPoint = std::array<double, ProofBox::axes>;
-
-// The viewers of a slab: floats cos_theta_o of [lo, hi].
-struct CosineRange {
-  float lo, hi;
-};
-// The elevations of wo that hold them.
-struct Elevations {
-  double lo, hi;
+  ProofPoint lo{}, hi{};
 };
 
 struct EnclosedPoint {
@@ -46,7 +36,9 @@ class EnclosedField {
   // Keeps f's enclosure and the references.
   EnclosedField(const AnyBrdf& f, const PackedSampler& packed);
 
-  Elevations elevations(CosineRange cosines) const;
+  std::size_t axes() const { return 2 + viewer_.axes(); }
+  // All viewers of a slab, and the whole leaf.
+  ProofBox whole(const KnownRange& known) const;
   LeafCell<float> cell_of(const PackedLeaf& leaf) const { return unpack(leaf, packed_.domain.half()); }
   // Whether the square holds wi about the normal, not half vectors and the like.
   bool is_of_directions() const {
@@ -54,18 +46,21 @@ class EnclosedField {
     return kind == DomainKind::projected_disk || kind == DomainKind::equal_area ||
            kind == DomainKind::stretched;
   }
-  EnclosedPoint over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const;
+  EnclosedPoint over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const;
   // As a sampler computes it.
-  PointValue at(const ProofPoint& point, CosineRange cosines, const PackedLeaf& leaf) const;
+  PointValue at(const ProofPoint& point, const KnownRange& known, const PackedLeaf& leaf) const;
 
  private:
-  AffineForm albedo_over(const AffineForm& cosine) const;
-  AffineForm target_over(const ShadingGeometry<AffineForm>& g, const AffineForm& projected_area) const;
+  AffineForm target_over(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
+                         const AffineForm& projected_area) const;
 
   const AnyBrdf& f_;
   std::shared_ptr<const BrdfEnclosure> enclosure_;
-  bool mirror_symmetric_;
   const PackedSampler& packed_;
+  bool turned_;  // f is evaluated where wo has no y
+  EnclosedViewer viewer_;
+  bool both_sides_;  // of half squares
+  std::vector<ViewerImage> images_;
 };
 
 }  // namespace reflectree::detail

@@ -55,6 +55,34 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const AffineForm& z,
   return out;
 }
 
+// The star of slopes likewise: b > 0 has p / c = l / (q z), b < 0 has z / l.
+inline detail::SlopeStar<AffineForm> slope_star(const Vec3<AffineForm>& wo, const Vec2<AffineForm>& along) {
+  const AffineForm q = sqr(along.x) + sqr(along.y), b = along.x * wo.x + along.y * wo.y;
+  const AffineForm qz = q * wo.z, l = sqrt(sqr(b) + qz * wo.z) + abs(b);
+  return {AffineForm(1), widened(by_sign(b, qz / l, l / wo.z), 4 * 0x1p-24)};
+}
+// With q and b of slope_star_map.hpp and the roots R and -1 / (q R) of z + 2 b r - q z r^2,
+//   (2 (wo.n) - z (n.n)) / (n.n) = z (1 - r / R) (1 + q R r) / (1 + q r^2).
+// 1 - r / R = d (1 - y) errs as above. But b is a sum whose terms may cancel, and so is wo.n: the map's R belongs to
+// a b that is off by 4 u of its terms, and wo.n errs by 4 u of its own, which are r times as large.
+inline AffineForm reflected_cosine(const AffineForm& twice, const Vec3<AffineForm>& wo,
+                                   const detail::SlopeStar<AffineForm>& star, const Vec2<AffineForm>& along,
+                                   const AffineForm& y, const AffineForm& d,
+                                   const AffineForm& cos2_theta_h) {
+  constexpr double u = 0x1p-24;
+  const AffineForm plain = twice - wo.z, r = y * d;
+  const double off = 24 * u * std::max(1., d.range.hi);
+  const double terms = r.range.hi * ((along.x * wo.x).range.magnitude() + (along.y * wo.y).range.magnitude());
+  const double lost = 16 * u * (twice.range.hi + wo.z.range.hi + cos2_theta_h.range.hi * terms);
+  if (!(off < 1) || !(lost < 1)) return plain;
+  const AffineForm to_rim = d * (AffineForm(1) - y) + AffineForm::anything_in({-off, off});
+  const AffineForm beyond = AffineForm(1) + (sqr(along.x) + sqr(along.y)) * (r * (star.p / star.c));
+  AffineForm out =
+      narrower(plain, wo.z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost}));
+  out.range.hi = std::min(out.range.hi, 1 + 4 * length_tolerance);
+  return out;
+}
+
 // A direction that a domain returns is of unit length, and so is a half vector: what large boxes know of them.
 inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point) {
   constexpr double most = 1 + 4 * length_tolerance;
@@ -71,10 +99,17 @@ inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point
 // the two may point apart, what it has along their difference m is taken out: of u along x only
 // u |(m.y, m.z)| / |m| < u |p| stays. With the roundings of this step and of the norm: less than 64 u of itself
 // and 8 u along x and y.
-inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<AffineForm>& wo,
-                                         const Vec2<AffineForm>& p) {
+//
+// `D`: a Domain, or one of a family, whose widths are forms.
+struct DomainForms {
+  DomainKind kind;
+  float exponent, stretch;
+  AffineForm scale_x, scale_y;
+};
+template <class D>
+DomainPointT<AffineForm> lift_box(const D& domain, const Vec3<AffineForm>& wo, const Vec2<AffineForm>& p) {
   if (domain.kind != DomainKind::back_vector) return with_unit_vectors(detail::lift_point(domain, wo, p));
-  Domain of_halves = domain;
+  D of_halves = domain;
   of_halves.kind = DomainKind::half_vector;
   const DomainPointT<AffineForm> turned =
       with_unit_vectors(detail::lift_point(of_halves, mirror_direction(wo), p));
