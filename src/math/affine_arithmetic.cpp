@@ -44,7 +44,7 @@ AffineForm sum(const AffineForm& the_a, double sign, const AffineForm& the_b, do
   }
   out.middle = a.middle + sign * b.middle;
   round(out, a.error + b.error + size * own, range, unit);
-  if (out.range.lo > 0) add_log_of_sum(out, the_a, sign, the_b, unit);
+  if (!out.range.contains(0)) add_log_of_sum(out, the_a, sign, the_b, unit);
   return out;
 }
 
@@ -71,32 +71,25 @@ AffineForm ramp(const AffineForm& x) {
 
 }  // namespace
 
-AffineForm operator-(const AffineForm& the_a) {
-  const Settled settled(the_a);
-  const AffineForm& a = settled.form();
-  AffineForm out;
-  out.middle = -a.middle, out.error = a.error, out.range = -a.range;
-  for (std::size_t i = 0; i < n; ++i) out.slope[i] = -a.slope[i];
-  return out;
-}
+AffineForm operator-(const AffineForm& a) { return turned_around(Settled(a).form()); }
 AffineForm operator+(const AffineForm& a, const AffineForm& b) { return sum(a, 1, b, rounded); }
 AffineForm operator-(const AffineForm& a, const AffineForm& b) { return sum(a, -1, b, rounded); }
 AffineForm operator*(const AffineForm& a, const AffineForm& b) {
   AffineForm out = product(a, b, a.range * b.range, rounded);
-  if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), 1, log_of(b), rounded);
+  if (!out.range.contains(0)) add_log(out, log_of(a), 1, log_of(b), rounded);
   return out;
 }
 AffineForm operator/(const AffineForm& a, const AffineForm& b) {
   const RealInterval range = a.range / b.range;
   if (b.range.lo <= 0 && b.range.hi >= 0) return only_range(range, rounded);
   AffineForm out = product(a, inverse(Settled(b).form()), range, rounded);
-  if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), -1, log_of(b), rounded);
+  if (!out.range.contains(0)) add_log(out, log_of(a), -1, log_of(b), rounded);
   return out;
 }
 
 AffineForm sqr(const AffineForm& x) {
   AffineForm out = product(x, x, sqr(x.range), rounded);
-  if (!(x.range.lo > 0)) return out;
+  if (x.range.contains(0)) return out;
   const LogForm log = log_of(x);
   add_log(out, log, 1, log, rounded);
   return out;

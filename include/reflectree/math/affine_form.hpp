@@ -29,8 +29,8 @@ struct AffineForm {
   Slopes slope{};
   double error = 0;  // infinite: the range alone is known
   RealInterval range;
-  // Of positive values also their logarithm, as another form: products of many factors that rise and fall
-  // against each other stay narrow there. Unknown where log_error is infinite.
+  // Of values of one sign also the logarithm of their size, as another form: products of many factors that rise and
+  // fall against each other stay narrow there. Unknown where log_error is infinite.
   double log_middle = 0;
   Slopes log_slope{};
   double log_error = detail::infinity;
@@ -70,6 +70,7 @@ AffineForm log1p(const AffineForm& x);
 AffineForm pow(const AffineForm& x, const AffineForm& y);  // x >= 0
 AffineForm sin(const AffineForm& x);
 AffineForm cos(const AffineForm& x);
+AffineForm asinh(const AffineForm& x);
 AffineForm acos(const AffineForm& x);
 AffineForm atan2(const AffineForm& y, const AffineForm& x);
 // Of two expressions that agree, up to 8 roundings, where s is 0: there the sign bit of s may say either.

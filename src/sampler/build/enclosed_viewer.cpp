@@ -9,6 +9,9 @@ namespace {
 
 constexpr double u = 0x1p-24;
 
+// Cosines and sines that would be 0 but for the rounding of their angle.
+constexpr float tiny = 1e-6f;
+
 AffineForm clipped(AffineForm x, RealInterval range) {
   x.range = intersection(x.range, range);
   return x;
@@ -35,11 +38,6 @@ double span_of(ViewerSymmetry symmetry) {
 // log_of_positive errs by less than 2.5e-7 of itself.
 constexpr double coordinate_error = 2.6e-7;
 
-Vec3<AffineForm> mirrored_y(Vec3<AffineForm> w) {
-  w.y = -w.y;
-  return w;
-}
-Vec3<AffineForm> half_turned(const Vec3<AffineForm>& w) { return {-w.x, -w.y, w.z}; }
 Vec3<AffineForm> turned_by(const Vec3<AffineForm>& w, const AffineForm& cosine, const AffineForm& sine) {
   return {w.x * cosine - w.y * sine, w.x * sine + w.y * cosine, w.z};
 }
@@ -89,7 +87,7 @@ ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters
     if (symmetry == ViewerSymmetry::two_planes) v.cos_phi = clipped(v.cos_phi, {0, 1});
     if (span_of(symmetry) < 4) v.sin_phi = clipped(v.sin_phi, {0, 1});
     v.framed = {s * v.cos_phi, s * v.sin_phi, c};
-    if (!axis_is_x()) {  // values at points are taken of directions that were turned there and back
+    if (viewer_.sin_axis != 0) {  // values at points are taken of directions that were turned there and back
       const AffineForm off = slack(8 * u * s.range.hi);
       v.framed.x = v.framed.x + off, v.framed.y = v.framed.y + off;
     }
@@ -126,11 +124,15 @@ Vec2<AffineForm> EnclosedViewer::widths(const ViewerForms& v) const {
   return {x, family.round ? x : width(family.y)};
 }
 
+bool EnclosedViewer::axis_is_coordinate() const {
+  return min(abs(viewer_.sin_axis), abs(viewer_.cos_axis)) < tiny;
+}
+
 std::vector<ViewerImage> EnclosedViewer::images(const BrdfEnclosure& of) const {
   const ViewerSymmetry symmetry = viewer_.frame.symmetry;
   const bool turns = (symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::half_turn) &&
                      !of.keeps_half_turns();
-  const bool mirrors = is_mirrored(symmetry) && !(axis_is_x() && of.keeps_mirrored_axes());
+  const bool mirrors = is_mirrored(symmetry) && !(axis_is_coordinate() && of.keeps_mirrored_axes());
   std::vector<ViewerImage> out;
   for (const bool half_turn : {false, true}) {
     for (const bool mirrored : {false, true}) {
@@ -140,43 +142,44 @@ std::vector<ViewerImage> EnclosedViewer::images(const BrdfEnclosure& of) const {
   return out;
 }
 
-// Where the axis is x, images differ by signs alone; else the caller's directions are turned by what rounds.
+// From the frame of the axis. Where that is x or y but for the rounding of an angle, what is left of the other
+// coordinate is slack; so sets of directions and of their mirror images stay mirror images of each other.
+Vec3<AffineForm> EnclosedViewer::from_axis(const Vec3<AffineForm>& w) const {
+  const float c = viewer_.cos_axis, s = viewer_.sin_axis;
+  const auto times = [](float k, const AffineForm& v) {
+    return k == 1 ? v : k == -1 ? -v : AffineForm(k) * v;
+  };
+  const auto plus = [](const AffineForm& v, float k, const AffineForm& other) {
+    return k == 0 ? v : v + slack(std::abs(double(k)) * other.range.magnitude());
+  };
+  if (abs(s) < tiny) return {plus(times(c, w.x), s, w.y), plus(times(c, w.y), s, w.x), w.z};
+  if (abs(c) < tiny) return {plus(times(-s, w.y), c, w.x), plus(times(s, w.x), c, w.y), w.z};
+  return turned_by(w, AffineForm(c), AffineForm(s));
+}
+
 ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
                                                        ViewerImage image) const {
   if (!azimuth_) return g;
+  const auto imaged = [&](Vec3<AffineForm> w) {
+    if (image.mirrored) w.y = -w.y;
+    if (image.half_turn) w.x = -w.x, w.y = -w.y;
+    return from_axis(w);
+  };
   ShadingGeometry<AffineForm> out = g;
   out.back = std::nullopt;
-  const auto imaged = [&](const Vec3<AffineForm>& w) {
-    return image.half_turn ? half_turned(image.mirrored ? mirrored_y(w) : w)
-                           : (image.mirrored ? mirrored_y(w) : w);
-  };
-  const AffineForm cosine(viewer_.cos_axis), sine(viewer_.sin_axis);
-  const auto from_axis = [&](const Vec3<AffineForm>& w) {
-    return axis_is_x() ? imaged(w) : turned_by(imaged(w), cosine, sine);
-  };
-  out.wo = from_axis(v.framed);
-  if (!axis_is_x()) {  // the framed one is what rounds
+  out.wo = imaged(v.framed);
+  if (viewer_.sin_axis != 0) {  // it is the framed one that rounds
     const AffineForm off = slack(8 * u * v.framed.x.range.magnitude() + 8 * u * v.framed.y.range.magnitude());
     out.wo.x = out.wo.x + off, out.wo.y = out.wo.y + off;
   }
   if (!viewer_.turns) {
-    out.wi = from_axis(g.wi), out.wh = from_axis(g.wh);
+    out.wi = imaged(g.wi), out.wh = imaged(g.wh);
     return out;
   }
-  // Cosine and sine of phi_o are quotients of what was turned.
+  // One turn by phi_o and the axis together, whose cosine and sine are sums of quotients of what was turned.
   AffineForm c = widened(v.cos_phi, 16 * u), s = widened(v.sin_phi, 16 * u);
-  if (!axis_is_x()) c = c + slack(8 * u), s = s + slack(8 * u);
-  if (axis_is_x()) {
-    out.wi = imaged(turned_by(g.wi, c, s)), out.wh = imaged(turned_by(g.wh, c, s));
-    return out;
-  }
-  const AffineForm around = image.mirrored ? -s : s;
-  AffineForm cos_phi = cosine * c - sine * around, sin_phi = sine * c + cosine * around;
-  if (image.half_turn) cos_phi = -cos_phi, sin_phi = -sin_phi;
-  const auto to_caller = [&](const Vec3<AffineForm>& w) {
-    return turned_by(image.mirrored ? mirrored_y(w) : w, cos_phi, sin_phi);
-  };
-  out.wi = to_caller(g.wi), out.wh = to_caller(g.wh);
+  if (viewer_.sin_axis != 0) c = c + slack(16 * u), s = s + slack(16 * u);
+  out.wi = imaged(turned_by(g.wi, c, s)), out.wh = imaged(turned_by(g.wh, c, s));
   return out;
 }
 

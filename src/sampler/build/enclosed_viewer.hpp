@@ -57,7 +57,8 @@ class EnclosedViewer {
   Vec2<AffineForm> widths(const ViewerForms& v) const;
 
  private:
-  bool axis_is_x() const { return viewer_.sin_axis == 0 && viewer_.cos_axis == 1; }
+  bool axis_is_coordinate() const;
+  Vec3<AffineForm> from_axis(const Vec3<AffineForm>& w) const;
   const PackedViewer& viewer_;
   bool azimuth_;
 };

@@ -55,11 +55,29 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const AffineForm& z,
   return out;
 }
 
-// The star of slopes likewise: b > 0 has p / c = l / (q z), b < 0 has z / l.
+// The star of slopes likewise: c / p is q z / l where b > 0, and l / z where b < 0. Both are
+//   sqrt(q) exp(-asinh(b / (sqrt(q) z))),
+// which has no kink where b changes its sign, and a logarithm that hardly bends.
 inline detail::SlopeStar<AffineForm> slope_star(const Vec3<AffineForm>& wo, const Vec2<AffineForm>& along) {
-  const AffineForm q = sqr(along.x) + sqr(along.y), b = along.x * wo.x + along.y * wo.y;
+  const AffineForm q = sqr(along.x) + sqr(along.y), b = along.x * wo.x + along.y * wo.y, width = sqrt(q);
   const AffineForm qz = q * wo.z, l = sqrt(sqr(b) + qz * wo.z) + abs(b);
-  return {AffineForm(1), widened(by_sign(b, qz / l, l / wo.z), 4 * 0x1p-24)};
+  const AffineForm c = by_sign(b, qz / l, l / wo.z), smooth = width * exp(-asinh(b / (width * wo.z)));
+  return {AffineForm(1), widened(narrower(c, smooth), 8 * 0x1p-24)};
+}
+// 1 / d = (1 - y) + c y = c (1 + (1 - y) (1 / c - 1)), the latter near the rim. What the map adds and takes away
+// rounds by less than 4 u max(1, c).
+inline AffineForm radius_per_y(const detail::SlopeStar<AffineForm>& star, const AffineForm& y) {
+  const AffineForm one(1), rest = one - y;
+  const double off = 4 * 0x1p-24 * std::max(1., star.c.range.hi);
+  const AffineForm slack = AffineForm::anything_in({-off, off});
+  const AffineForm plain = one / (one + (star.c - one) * y);
+  const AffineForm inside = one / (rest + star.c * y + slack);
+  const AffineForm by_rim = one / (star.c * (one + rest * (one / star.c - one)) + slack);
+  return narrower(narrower(plain, inside), by_rim);
+}
+// Both squares are r^2 q; what they round is relative.
+inline AffineForm squared_normal(const Vec2<AffineForm>&, const Vec2<AffineForm>& along, const AffineForm& r) {
+  return widened(AffineForm(1) + (sqr(along.x) + sqr(along.y)) * sqr(r), 8 * 0x1p-24);
 }
 // With q and b of slope_star_map.hpp and the roots R and -1 / (q R) of z + 2 b r - q z r^2,
 //   (2 (wo.n) - z (n.n)) / (n.n) = z (1 - r / R) (1 + q R r) / (1 + q r^2).
