@@ -46,14 +46,20 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
       }
       if (!o->output.empty()) check_output(o->output);
       o->certify.loosest = std::max(o->certify.loosest, o->certify.tolerance);
-      OpenedSampler subject = certified(context, open_sampler_file(o->sampler, context.places()), o->certify);
-      const std::string path = o->output.empty() ? subject.sampler_file : o->output;
-      save_sampler(path, subject.data);
-      subject.file_size = std::filesystem::file_size(path);
-      show_info(context, "certify", subject);
-      context.say("saved " + path);
-      const bool all = std::all_of(subject.data.exact.begin(), subject.data.exact.end(),
-                                   [](const MajorantTree& t) { return t.status == BoundStatus::certified; });
+      const auto save = [&](auto subject) {
+        const std::string path = o->output.empty() ? subject.sampler_file : o->output;
+        save_sampler(path, subject.data);
+        subject.file_size = std::filesystem::file_size(path);
+        show_info(context, "certify", subject);
+        context.say("saved " + path);
+        return std::all_of(subject.data.exact.begin(), subject.data.exact.end(),
+                           [](const MajorantTree& t) { return t.status == BoundStatus::certified; });
+      };
+      const FilePlaces places = context.places();
+      const bool all =
+          names_family(o->sampler, places)
+              ? save(certified(context, reflectree::open_family(o->sampler, places), o->certify))
+              : save(certified(context, open_sampler_file(o->sampler, places), o->certify));
       return int(all ? exit_success : exit_check_failed);
     };
   });

@@ -34,5 +34,6 @@ void check_output(const std::string& path);
 
 // Proves what can be proved of the subject's bounds, says what was, and packs it again. Throws Error, Cancelled.
 OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options);
+OpenedFamily certified(const Context& context, OpenedFamily subject, const CertifyOptions& options);
 
 }  // namespace reflectree::cli

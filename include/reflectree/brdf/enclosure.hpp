@@ -3,10 +3,12 @@
 // proofs rest on it (docs/exactness.md).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
 #include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/parameter.hpp"
 #include "reflectree/math/affine_form.hpp"
 
 namespace reflectree {
@@ -110,6 +112,19 @@ class BrdfEnclosure {
 // What a formula keeps, to the last bit.
 struct ExactSymmetry {
   bool in_plane_of_wo = false, half_turns = false, mirrored_axes = false;
+};
+inline ExactSymmetry symmetry_of(const BrdfEnclosure& f) {
+  return {f.is_mirror_symmetric(), f.keeps_half_turns(), f.keeps_mirrored_axes()};
+}
+
+// Likewise of a family, whose parameters are forms, too.
+using ParameterForms = std::array<AffineForm, max_parameters>;
+class FamilyEnclosure {
+ public:
+  virtual ~FamilyEnclosure() = default;
+  virtual RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g, const ParameterForms& at) const = 0;
+  // Of all members.
+  virtual ExactSymmetry keeps() const { return {}; }
 };
 
 namespace detail {

@@ -52,6 +52,8 @@ struct AffineForm {
   // Anything in the range.
   static AffineForm anything_in(RealInterval range);
 
+  // Whether they are the same form, and so the same number at every point.
+  friend bool operator==(const AffineForm&, const AffineForm&) = default;
   friend AffineForm operator-(const AffineForm& a);
   friend AffineForm operator+(const AffineForm& a, const AffineForm& b);
   friend AffineForm operator-(const AffineForm& a, const AffineForm& b);

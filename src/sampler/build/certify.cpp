@@ -176,11 +176,24 @@ std::string no_proof(const AnyBrdf& f) {
   return "";
 }
 
-Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options,
-                      const Host& the_host) {
+std::string no_proof(const AnyFamily& family) {
+  if (!family.enclosure()) {
+    return "no interval form of this family: models whose numbers vary have one, where no azimuth varies and two "
+           "widths do not meet";
+  }
+  if (family.channels() != 1 && family.channels() != 3)
+    return "no interval form of a function of this many channels";
+  return "";
+}
+
+namespace {
+
+// f: a function or a family.
+template <class F>
+Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options, const Host& the_host) {
   check(options);
   const Host host = completed(the_host);
-  std::string refusal = no_proof(f);
+  const std::string refusal = no_proof(f);
   if (!refusal.empty()) throw Error(refusal, data.material, "its bounds stay estimated");
   host.stage("proving the bounds");
   const PackedSampler packed = pack(data);
@@ -241,6 +254,16 @@ Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions&
   data = std::move(proved);
   host.progress(1);
   return out;
+}
+
+}  // namespace
+
+Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options, const Host& host) {
+  return certify_any(data, f, options, host);
+}
+Certification certify(SamplerData& data, const AnyFamily& family, const CertifyOptions& options,
+                      const Host& host) {
+  return certify_any(data, family, options, host);
 }
 
 }  // namespace reflectree

@@ -2,7 +2,6 @@
 #include "enclosed_field.hpp"
 
 #include "reflectree/error.hpp"
-#include "reflectree/sampler/square/enclosed_map.hpp"
 
 namespace reflectree::detail {
 
@@ -39,14 +38,25 @@ void check_value(const EnclosedPoint& enclosed, const PointValue& value) {
               "give it the enclosure of its own formula, or none");
 }
 
-EnclosedField::EnclosedField(const AnyBrdf& f, const PackedSampler& packed)
-    : f_(f),
-      enclosure_(f.traits().enclosure),
-      packed_(packed),
-      turned_(f.traits().isotropic_by_formula && packed.viewer.frame.isotropic()),
+EnclosedField::EnclosedField(const PackedSampler& packed, int channels, bool turned, ExactSymmetry keeps)
+    : packed_(packed),
+      channels_(channels),
+      turned_(turned),
       viewer_(packed.viewer, turned_),
-      both_sides_(packed.domain.half() && !(turned_ && enclosure_->is_mirror_symmetric())),
-      images_(viewer_.images(*enclosure_)) {}
+      both_sides_(packed.domain.half() && !(turned_ && keeps.in_plane_of_wo)),
+      images_(viewer_.images(keeps)) {}
+
+EnclosedField::EnclosedField(const AnyBrdf& f, const PackedSampler& packed)
+    : EnclosedField(packed, f.channels(), f.traits().isotropic_by_formula && packed.viewer.frame.isotropic(),
+                    symmetry_of(*f.traits().enclosure)) {
+  f_ = &f, enclosure_ = f.traits().enclosure;
+}
+EnclosedField::EnclosedField(const AnyFamily& family, const PackedSampler& packed)
+    : EnclosedField(packed, family.channels(),
+                    family.traits().isotropic_by_formula && packed.viewer.frame.isotropic(),
+                    family.enclosure()->keeps()) {
+  family_ = &family, family_enclosure_ = family.enclosure();
+}
 
 ProofBox EnclosedField::whole(const KnownRange& known) const {
   const Elevations theta = viewer_.elevations(known);
@@ -62,7 +72,8 @@ AffineForm EnclosedField::target_over(const ShadingGeometry<AffineForm>& g, cons
   AffineForm out;
   for (std::size_t i = 0; i < images_.size(); ++i) {
     const ShadingGeometry<AffineForm> known = viewer_.for_caller(g, v, images_[i]);
-    const AffineForm t = reduced(packed_.target, (*enclosure_)(known), f_.channels()) * area;
+    const RgbT<AffineForm> f = family_ ? (*family_enclosure_)(known, v.parameters) : (*enclosure_)(known);
+    const AffineForm t = reduced(packed_.target, f, channels_) * area;
     out = i == 0 ? t : either(out, t);
   }
   return out;
@@ -83,7 +94,7 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known, 
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
-  const DomainPointT<AffineForm> lifted = lift_box(packed_.domain, viewer.wo, at.p);
+  const DomainPointT<AffineForm> lifted = lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
   EnclosedPoint out{target_over(lifted.geometry, viewer, lifted.projected_area), std::nullopt,
                     viewer.albedo * at.height};
   if (both_sides_) {
@@ -99,16 +110,26 @@ PointValue EnclosedField::at(const ProofPoint& point, const KnownRange& known, c
     wo = {float(double(s) * std::cos(point[3])), float(double(s) * std::sin(point[3])), c};
     wo = turn(wo, packed_.viewer.cos_axis, packed_.viewer.sin_axis);
   }
+  Parameters parameters{};
+  const PackedFamily& family = packed_.viewer.family;
+  for (std::size_t i = 0, first = axes() - family.count; i < family.count; ++i) {
+    const RealInterval& range = known.beyond[viewer_.first_parameter() + i];
+    const double coordinate = point[first + i];
+    const double value = family.parameters[i].logarithmic ? std::exp(coordinate) : coordinate;
+    parameters[i] = clamp(float(value), float(range.lo), float(range.hi));
+  }
   Incidence in;
   PointValue out;
-  if (!find_incidence(packed_.viewer, wo, in)) return out;
+  if (!find_incidence(packed_, wo, parameters, in)) return out;
+  const Domain domain = domain_at(packed_.viewer, packed_.domain, in);
   const bool half = packed_.domain.half();
   const PointInLeaf at = point_at(leaf, half, float(point[1]), float(point[2]));
   for (const bool mirrored : {false, true}) {
     if (mirrored && !half) break;
-    const DomainPoint lifted = lift(packed_.domain, in.wo, at.p, mirrored);
-    out.target =
-        max(out.target, packed_.target(f_(known_geometry(in, lifted.geometry, turned_))) * lifted.projected_area);
+    const DomainPoint lifted = lift(domain, in.wo, at.p, mirrored);
+    const ShadingGeometry<float> g = known_geometry(in, lifted.geometry, turned_);
+    const Spectrum value = family_ ? (*family_)(g, parameters) : (*f_)(g);
+    out.target = max(out.target, packed_.target(value) * lifted.projected_area);
   }
   out.unit = in.albedo * (at.height / leaf.height);
   return out;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "enclosed_viewer.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree::detail {
@@ -33,8 +34,9 @@ void check_value(const EnclosedPoint& enclosed, const PointValue& value);
 
 class EnclosedField {
  public:
-  // Keeps f's enclosure and the references.
+  // Keep the enclosure and the references.
   EnclosedField(const AnyBrdf& f, const PackedSampler& packed);
+  EnclosedField(const AnyFamily& family, const PackedSampler& packed);
 
   std::size_t axes() const { return 2 + viewer_.axes(); }
   // All viewers of a slab, and the whole leaf.
@@ -54,9 +56,14 @@ class EnclosedField {
   AffineForm target_over(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
                          const AffineForm& projected_area) const;
 
-  const AnyBrdf& f_;
+  EnclosedField(const PackedSampler& packed, int channels, bool turned, ExactSymmetry keeps);
+
+  const AnyBrdf* f_ = nullptr;  // or
+  const AnyFamily* family_ = nullptr;
   std::shared_ptr<const BrdfEnclosure> enclosure_;
+  std::shared_ptr<const FamilyEnclosure> family_enclosure_;
   const PackedSampler& packed_;
+  int channels_;
   bool turned_;  // f is evaluated where wo has no y
   EnclosedViewer viewer_;
   bool both_sides_;  // of half squares

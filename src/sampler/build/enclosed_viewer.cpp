@@ -112,7 +112,7 @@ ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters
   return v;
 }
 
-Vec2<AffineForm> EnclosedViewer::widths(const ViewerForms& v) const {
+DomainForms EnclosedViewer::domain_of(const Domain& domain, const ViewerForms& v) const {
   const PackedFamily& family = viewer_.family;
   const auto width = [&](const PackedWidth& w) {
     AffineForm exponent(0);
@@ -120,19 +120,21 @@ Vec2<AffineForm> EnclosedViewer::widths(const ViewerForms& v) const {
       exponent = exponent + AffineForm(w.slope[i]) * (v.coordinates[i] - AffineForm(w.corner[i]));
     return AffineForm(w.largest) * exp(exponent);
   };
-  const AffineForm x = width(family.x);
-  return {x, family.round ? x : width(family.y)};
+  DomainForms out{domain.kind, domain.exponent, domain.stretch, AffineForm(domain.scale_x), AffineForm(domain.scale_y)};
+  if (domain.kind != DomainKind::scaled_star || family.count == 0) return out;
+  out.scale_x = width(family.x), out.scale_y = family.round ? out.scale_x : width(family.y);
+  return out;
 }
 
 bool EnclosedViewer::axis_is_coordinate() const {
   return min(abs(viewer_.sin_axis), abs(viewer_.cos_axis)) < tiny;
 }
 
-std::vector<ViewerImage> EnclosedViewer::images(const BrdfEnclosure& of) const {
+std::vector<ViewerImage> EnclosedViewer::images(const ExactSymmetry& keeps) const {
   const ViewerSymmetry symmetry = viewer_.frame.symmetry;
   const bool turns = (symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::half_turn) &&
-                     !of.keeps_half_turns();
-  const bool mirrors = is_mirrored(symmetry) && !(axis_is_coordinate() && of.keeps_mirrored_axes());
+                     !keeps.half_turns;
+  const bool mirrors = is_mirrored(symmetry) && !(axis_is_coordinate() && keeps.mirrored_axes);
   std::vector<ViewerImage> out;
   for (const bool half_turn : {false, true}) {
     for (const bool mirrored : {false, true}) {

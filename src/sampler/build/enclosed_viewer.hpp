@@ -8,6 +8,7 @@
 #include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/sampler/packed_sampler.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
+#include "reflectree/sampler/square/enclosed_map.hpp"
 
 namespace reflectree::detail {
 
@@ -20,8 +21,6 @@ struct KnownRange {
 struct Elevations {
   double lo, hi;
 };
-
-using ParameterForms = std::array<AffineForm, max_parameters>;
 
 struct ViewerForms {
   Vec3<AffineForm> wo;               // in the frame of the domain
@@ -50,11 +49,14 @@ class EnclosedViewer {
   ViewerForms over(const std::array<AffineForm, 2 + max_parameters>& unknown, const KnownRange& known) const;
 
   bool sees_azimuth() const { return azimuth_; }
-  std::vector<ViewerImage> images(const BrdfEnclosure& of) const;
+  // Of a KnownRange: where parameters begin.
+  std::size_t first_parameter() const { return viewer_.frame.isotropic() ? 0 : 1; }
+  std::vector<ViewerImage> images(const ExactSymmetry& keeps) const;
   // What the function is evaluated at (known_geometry).
   ShadingGeometry<AffineForm> for_caller(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
                                          ViewerImage image) const;
-  Vec2<AffineForm> widths(const ViewerForms& v) const;
+  // The domain with the widths of the members.
+  DomainForms domain_of(const Domain& domain, const ViewerForms& v) const;
 
  private:
   bool axis_is_coordinate() const;
