@@ -25,7 +25,10 @@ namespace {
 
 // As above: a material whose bounds cannot be proved.
 void check_provable(const Context& context, const std::string& material) {
-  const std::string refusal = no_proof(open_brdf(material, context.places()));
+  const FilePlaces places = context.places();
+  const std::string refusal = names_family(material, places)
+                                  ? no_proof(make_family(parse_material(material, places), places))
+                                  : no_proof(open_brdf(material, places));
   if (!refusal.empty()) throw Error(refusal, material, "leave out --certify; its bounds stay estimated");
 }
 
@@ -65,7 +68,8 @@ void add_build(CLI::App& app, Context& context, Run& run) {
         show_info(context, "build", subject);
       };
       if (names_family(o->material, context.places())) {
-        save(open_family(context, o->material, o->choices));
+        OpenedFamily family = open_family(context, o->material, o->choices);
+        save(o->certify ? certified(context, std::move(family), {}) : std::move(family));
       } else if (o->certify) {
         save(certified(context, open_sampler(context, o->material, o->choices), {}));
       } else {

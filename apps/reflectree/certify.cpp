@@ -55,18 +55,30 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
       }
       if (!o->output.empty()) check_output(o->output);
       o->certify.loosest = std::max(o->certify.loosest, o->certify.tolerance);
-      OpenedSampler subject = certified(context, open_sampler_file(o->sampler, context.places()), o->certify);
+      const auto save = [&](auto subject) {
+        const std::string path = o->output.empty() ? subject.sampler_file : o->output;
+        save_sampler(path, subject.data);
+        subject.file_size = std::filesystem::file_size(path);
+        show_info(context, "certify", subject);
+        context.say("saved " + path);
+        const bool all = std::all_of(subject.data.exact.begin(), subject.data.exact.end(), [](const MajorantTree& t) {
+          return t.status == BoundStatus::certified;
+        });
+        const bool albedo = o->albedo == 0 || (subject.data.albedo.proved_error > 0 &&
+                                               subject.data.albedo.proved_error <= float(o->albedo));
+        return int(all && albedo ? exit_success : exit_check_failed);
+      };
+      const FilePlaces places = context.places();
+      if (names_family(o->sampler, places)) {
+        if (o->albedo > 0) {
+          throw Error("the albedo of a family has no proof", o->sampler,
+                      "leave --albedo out; 'info' tells the error that was measured");
+        }
+        return save(certified(context, reflectree::open_family(o->sampler, places), o->certify));
+      }
+      OpenedSampler subject = certified(context, open_sampler_file(o->sampler, places), o->certify);
       if (o->albedo > 0) prove_albedo_of(context, subject, o->albedo);
-      const std::string path = o->output.empty() ? subject.sampler_file : o->output;
-      save_sampler(path, subject.data);
-      subject.file_size = std::filesystem::file_size(path);
-      show_info(context, "certify", subject);
-      context.say("saved " + path);
-      const bool all = std::all_of(subject.data.exact.begin(), subject.data.exact.end(),
-                                   [](const MajorantTree& t) { return t.status == BoundStatus::certified; });
-      const bool albedo = o->albedo == 0 || (subject.data.albedo.proved_error > 0 &&
-                                             subject.data.albedo.proved_error <= float(o->albedo));
-      return int(all && albedo ? exit_success : exit_check_failed);
+      return save(std::move(subject));
     };
   });
 }

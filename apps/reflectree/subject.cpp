@@ -140,17 +140,34 @@ OpenedSampler open_sampler(const Context& context, const std::string& text, cons
   return subject;
 }
 
-OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options) {
+namespace {
+
+template <class F>
+void prove(const Context& context, SamplerData& data, const F& f, const CertifyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const Certification c = certify(subject.data, subject.f, options, context.host("certifying"));
+  const Certification c = certify(data, f, options, context.host("certifying"));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  subject.packed = std::make_shared<const PackedSampler>(pack(subject.data));
-  subject.sampler = {ExactSampler<AnyBrdf>(subject.f, subject.packed),
-                     OneShotSampler<AnyBrdf>(subject.f, subject.packed)};
   context.say(fmt::format("proved {} of {} leaves, {} of {} slabs, in {:.2f} s; {} bounds were raised",
                           c.proved_leaves, c.leaves, c.certified_slabs, c.slabs, took.count(),
                           c.raised_leaves));
   context.detail(fmt::format("looked at {} boxes", c.boxes));
+}
+
+}  // namespace
+
+OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options) {
+  prove(context, subject.data, subject.f, options);
+  subject.packed = std::make_shared<const PackedSampler>(pack(subject.data));
+  subject.sampler = {ExactSampler<AnyBrdf>(subject.f, subject.packed),
+                     OneShotSampler<AnyBrdf>(subject.f, subject.packed)};
+  return subject;
+}
+OpenedFamily certified(const Context& context, OpenedFamily subject, const CertifyOptions& options) {
+  prove(context, subject.data, subject.family, options);
+  const std::optional<double> seconds = subject.build_seconds;
+  const std::string text = subject.text, file = subject.sampler_file;
+  subject = reflectree::open_family(subject.family, std::move(subject.data), subject.places);
+  subject.text = text, subject.sampler_file = file, subject.build_seconds = seconds;
   return subject;
 }
 

@@ -35,6 +35,7 @@ void check_output(const std::string& path);
 
 // Proves what can be proved of the subject's bounds, says what was, and packs it again. Throws Error, Cancelled.
 OpenedSampler certified(const Context& context, OpenedSampler subject, const CertifyOptions& options);
+OpenedFamily certified(const Context& context, OpenedFamily subject, const CertifyOptions& options);
 // Proves the albedo to within a relative error, or as far as that is possible, and says so. Throws likewise.
 void prove_albedo_of(const Context& context, OpenedSampler& subject, double relative_error);
 

@@ -13,6 +13,7 @@ AffineForm product(const AffineForm& a, const AffineForm& b, RealInterval range,
   AffineForm out;
   double middle = a.middle * b.middle, square = 0, cross = 0, radius_a = 0, radius_b = 0;
   for (std::size_t i = 0; i < n; ++i) {
+    if (a.slope[i] == 0 && b.slope[i] == 0) continue;  // variables that are not there
     out.slope[i] = a.middle * b.slope[i] + b.middle * a.slope[i];
     // e^2 is in [0, 1]; e e' in [-1, 1].
     const double d = a.slope[i] * b.slope[i];
@@ -43,7 +44,7 @@ AffineForm sum(const AffineForm& the_a, double sign, const AffineForm& the_b, do
   }
   out.middle = a.middle + sign * b.middle;
   round(out, a.error + b.error + size * own, range, unit);
-  if (out.range.lo > 0) add_log_of_sum(out, the_a, sign, the_b, unit);
+  if (!out.range.contains(0)) add_log_of_sum(out, the_a, sign, the_b, unit);
   return out;
 }
 
@@ -70,32 +71,25 @@ AffineForm ramp(const AffineForm& x) {
 
 }  // namespace
 
-AffineForm operator-(const AffineForm& the_a) {
-  const Settled settled(the_a);
-  const AffineForm& a = settled.form();
-  AffineForm out;
-  out.middle = -a.middle, out.error = a.error, out.range = -a.range;
-  for (std::size_t i = 0; i < n; ++i) out.slope[i] = -a.slope[i];
-  return out;
-}
+AffineForm operator-(const AffineForm& a) { return turned_around(Settled(a).form()); }
 AffineForm operator+(const AffineForm& a, const AffineForm& b) { return sum(a, 1, b, rounded); }
 AffineForm operator-(const AffineForm& a, const AffineForm& b) { return sum(a, -1, b, rounded); }
 AffineForm operator*(const AffineForm& a, const AffineForm& b) {
   AffineForm out = product(a, b, a.range * b.range, rounded);
-  if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), 1, log_of(b), rounded);
+  if (!out.range.contains(0)) add_log(out, log_of(a), 1, log_of(b), rounded);
   return out;
 }
 AffineForm operator/(const AffineForm& a, const AffineForm& b) {
   const RealInterval range = a.range / b.range;
   if (b.range.lo <= 0 && b.range.hi >= 0) return only_range(range, rounded);
   AffineForm out = product(a, inverse(Settled(b).form()), range, rounded);
-  if (out.range.lo > 0 && a.range.lo > 0) add_log(out, log_of(a), -1, log_of(b), rounded);
+  if (!out.range.contains(0)) add_log(out, log_of(a), -1, log_of(b), rounded);
   return out;
 }
 
 AffineForm sqr(const AffineForm& x) {
   AffineForm out = product(x, x, sqr(x.range), rounded);
-  if (!(x.range.lo > 0)) return out;
+  if (x.range.contains(0)) return out;
   const LogForm log = log_of(x);
   add_log(out, log, 1, log, rounded);
   return out;
@@ -150,13 +144,8 @@ AffineForm max(const AffineForm& a, const AffineForm& b) {
 }
 AffineForm min(const AffineForm& a, const AffineForm& b) { return -max(-a, -b); }
 
-AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const AffineForm& if_negative) {
-  if (s.range.lo > 0) return if_positive;
-  if (s.range.hi < 0) return if_negative;
-  constexpr double agreement = 0x1p-21;  // 8 roundings
-  if (s.range.lo == 0) return widened(if_positive, agreement);
-  if (s.range.hi == 0) return widened(if_negative, agreement);
-  const Settled settled_a(if_positive), settled_b(if_negative);
+AffineForm either(const AffineForm& the_a, const AffineForm& the_b) {
+  const Settled settled_a(the_a), settled_b(the_b);
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
   const RealInterval range = hull(a.range, b.range);
   if (!is_known(a) || !is_known(b)) return AffineForm::anything_in(range);
@@ -170,6 +159,15 @@ AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const Aff
   out.middle = 0.5 * (a.middle + b.middle);
   complete(out, radius_of(out.slope), 0.5 * apart + std::max(a.error, b.error) + size * own, range);
   return out;
+}
+
+AffineForm by_sign(const AffineForm& s, const AffineForm& if_positive, const AffineForm& if_negative) {
+  if (s.range.lo > 0) return if_positive;
+  if (s.range.hi < 0) return if_negative;
+  constexpr double agreement = 0x1p-21;  // 8 roundings
+  if (s.range.lo == 0) return widened(if_positive, agreement);
+  if (s.range.hi == 0) return widened(if_negative, agreement);
+  return either(if_positive, if_negative);
 }
 AffineForm flip_sign(const AffineForm& x, const AffineForm& s) {
   if (s.range.lo >= 0) return x;

@@ -23,14 +23,26 @@ AffineForm concave(const AffineForm& x, const Function& f, double t, double alph
   return between_lines(x, alpha, low, high, range, unit);
 }
 
-// sin and cos where they are concave; place: where the slope is alpha.
+// sin and cos. place: where, in the arc on which they are concave, the slope is alpha; there, and at the image of
+// the place about `centre` of the arc next to it, the distance from a line of that slope is extreme.
 template <class Function, class Place>
 AffineForm circular(const AffineForm& x, const Function& f, const Place& place, RealInterval concave_in,
-                    RealInterval range) {
+                    double centre, RealInterval range) {
   const double a = x.range.lo, b = x.range.hi;
-  if (!concave_in.contains(x.range)) return only_range(range, library);
+  if (!(b - a < 3)) return only_range(range, library);
   const double alpha = b - a > 1e-7 ? (f(b).value - f(a).value) / (b - a) : f(0.5 * (a + b)).slope;
-  return concave(x, f, std::clamp(place(alpha), a, b), alpha, range, library);
+  if (concave_in.contains(x.range)) {
+    return concave(x, f, std::clamp(place(alpha), a, b), alpha, range, library);
+  }
+  constexpr double turn = 2 * pi_v<double>;
+  const double at_a = f(a).value - alpha * a, at_b = f(b).value - alpha * b;
+  double low = std::min(at_a, at_b), high = std::max(at_a, at_b);
+  for (const double p : {place(alpha), 2 * centre - place(alpha)}) {
+    const double t = p + turn * std::ceil((a - p) / turn);
+    if (!(t < b)) continue;
+    low = std::min(low, f(t).value - alpha * t), high = std::max(high, f(t).value - alpha * t);
+  }
+  return between_lines(x, alpha, low, high, range, library);
 }
 
 }  // namespace
@@ -111,14 +123,31 @@ AffineForm sin(const AffineForm& the_x) {
   const Settled settled(the_x);
   const auto f = [](double v) { return Curve{std::sin(v), std::cos(v)}; };
   const auto place = [](double slope) { return std::acos(std::clamp(slope, -1., 1.)); };
-  return circular(settled.form(), f, place, {0, 3.1415926535897931}, sin(settled.form().range));
+  return circular(settled.form(), f, place, {0, 3.1415926535897931}, 0, sin(settled.form().range));
 }
 AffineForm cos(const AffineForm& the_x) {
   const Settled settled(the_x);
   const auto f = [](double v) { return Curve{std::cos(v), -std::sin(v)}; };
   const auto place = [](double slope) { return std::asin(std::clamp(-slope, -1., 1.)); };
-  return circular(settled.form(), f, place, {-1.5707963267948966, 1.5707963267948966},
+  return circular(settled.form(), f, place, {-1.5707963267948966, 1.5707963267948966}, 1.5707963267948966,
                   cos(settled.form().range));
+}
+AffineForm asinh(const AffineForm& the_x) {
+  const Settled settled(the_x);
+  const AffineForm& x = settled.form();
+  const double a = x.range.lo, b = x.range.hi;
+  const RealInterval range =
+      detail::ascending([](double v) { return std::asinh(v); }, x.range);
+  if (!is_known(x) || !std::isfinite(a) || !std::isfinite(b)) return only_range(range, library);
+  const auto f = [](double v) { return std::asinh(v); };
+  const double alpha = b - a > 1e-7 * (1 + std::abs(a)) ? (f(b) - f(a)) / (b - a) : 1 / std::hypot(1, a);
+  double low = std::min(f(a) - alpha * a, f(b) - alpha * b), high = std::max(f(a) - alpha * a, f(b) - alpha * b);
+  // Where its slope, 1 / sqrt(1 + t^2), is alpha.
+  const double place = std::sqrt(std::max(1 / (alpha * alpha) - 1, 0.));
+  for (const double t : {std::clamp(place, a, b), std::clamp(-place, a, b)})
+    low = std::min(low, f(t) - alpha * t), high = std::max(high, f(t) - alpha * t);
+  const double slack = (1 + std::abs(f(a)) + std::abs(f(b))) * own;
+  return between_lines(x, alpha, low - slack, high + slack, range, library);
 }
 AffineForm acos(const AffineForm& x) { return only_range(acos(x.range), library); }
 

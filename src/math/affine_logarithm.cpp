@@ -11,25 +11,27 @@ LinesOfLog lines_of_log(double a, double b) {
 }
 
 LogForm log_of(const AffineForm& x) {
-  const double a = x.range.lo, b = x.range.hi;
+  const double sign = x.range.hi < 0 ? -1 : 1;
+  const double a = sign > 0 ? x.range.lo : -x.range.hi, b = sign > 0 ? x.range.hi : -x.range.lo;
   LogForm out = kept_log(x);
   // About what the lines would add: a sixteenth of the square of the range's width.
   if (is_log_known(x) && !((x.error + 0.1 * (b - a) * (b - a) / a) < 0.7 * x.log_error * a)) return out;
   out = {0, {}, detail::infinity};
   if (!(a > 1e-35) || !(b < 8 * a) || !is_known(x)) return out;
   const auto [la, lb, alpha, low, high] = lines_of_log(a, b);
-  out.middle = alpha * x.middle + 0.5 * (low + high);
-  for (std::size_t i = 0; i < n; ++i) out.slope[i] = alpha * x.slope[i];
+  out.middle = sign * alpha * x.middle + 0.5 * (low + high);
+  for (std::size_t i = 0; i < n; ++i) out.slope[i] = sign * alpha * x.slope[i];
   out.error = alpha * x.error + 0.5 * std::max(high - low, 0.) + (4 + std::abs(la) + std::abs(lb)) * own;
   return out;
 }
 
 void add_log(AffineForm& x, const LogForm& a, double sign, const LogForm& b, double unit) {
   // Below this the underflow counts.
-  if (!(a.error + b.error < 1) || !(x.range.lo > 1e-30)) return;
+  const double least = std::max(x.range.lo, -x.range.hi);
+  if (!(a.error + b.error < 1) || !(least > 1e-30)) return;
   x.log_middle = a.middle + sign * b.middle;
   for (std::size_t i = 0; i < n; ++i) x.log_slope[i] = a.slope[i] + sign * b.slope[i];
-  x.log_error = a.error + b.error + 1.001 * unit + flushed / x.range.lo + (a.size() + b.size()) * own;
+  x.log_error = a.error + b.error + 1.001 * unit + flushed / least + (a.size() + b.size()) * own;
 }
 
 namespace {
@@ -37,9 +39,9 @@ bool is_slack(const AffineForm& a) { return radius_of(a.slope) == 0 && a.range.c
 }  // namespace
 
 void add_log_of_sum(AffineForm& out, const AffineForm& a, double sign, const AffineForm& b, double unit) {
-  const double slack = b.range.magnitude();
-  if (is_log_known(a) && is_slack(b) && slack < 0.1 * a.range.lo) {
-    const LogForm log{0, {}, slack / (a.range.lo - slack) * (1 + own)};
+  const double slack = b.range.magnitude(), least = std::max(a.range.lo, -a.range.hi);
+  if (is_log_known(a) && is_slack(b) && slack < 0.1 * least) {
+    const LogForm log{0, {}, slack / (least - slack) * (1 + own)};
     add_log(out, kept_log(a), 1, log, unit);
     return;
   }
@@ -65,6 +67,13 @@ void add_log_of_sum(AffineForm& out, const AffineForm& a, double sign, const Aff
               0.5 * std::max(high - low, 0.) +
               (std::abs(low) + std::abs(high) + log_a.size() + 2 * u.size()) * own;
   add_log(out, log, 1, log_one, unit);
+}
+
+AffineForm turned_around(const AffineForm& x) {
+  AffineForm out = x;
+  out.middle = -x.middle, out.range = -x.range;
+  for (double& v : out.slope) v = -v;
+  return out;
 }
 
 AffineForm exponential(const LogForm& log, RealInterval exponents, RealInterval range, double unit) {

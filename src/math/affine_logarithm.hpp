@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second form that positive values have, that of their logarithm.
+// The second form that values of one sign have, that of the logarithm of their size.
 #pragma once
 
 #include "affine_tube.hpp"
@@ -23,8 +23,8 @@ struct LinesOfLog {
 };
 LinesOfLog lines_of_log(double a, double b);
 
-// log x where nobody kept it, between secant and tangent; infinite error where x is not positive or spans too
-// much for lines.
+// log |x| where nobody kept it, between secant and tangent; infinite error where x may be 0 or spans too much for
+// lines.
 LogForm log_of(const AffineForm& x);
 
 // Gives x, that was rounded once, the logarithm a + sign b.
@@ -34,6 +34,8 @@ void add_log(AffineForm& x, const LogForm& a, double sign, const LogForm& b, dou
 // convex in u, with a second derivative of at most 1/4. Or log a, where b is a slack.
 void add_log_of_sum(AffineForm& out, const AffineForm& a, double sign, const AffineForm& b, double unit);
 
+// -x.
+AffineForm turned_around(const AffineForm& x);
 // e^log; its exponents are known to lie in a range.
 AffineForm exponential(const LogForm& log, RealInterval exponents, RealInterval range, double unit);
 
@@ -44,8 +46,10 @@ class Settled {
     if (!is_log_known(x)) return;
     // About what exp adds: a quarter of the square of the radius.
     const double radius = radius_of(x.log_slope) + x.log_error;
-    if (!(x.range.hi * (0.2 * radius * radius + x.log_error) < x.error)) return;
-    other_ = exponential(kept_log(x), RealInterval::whole(), x.range, 0);
+    if (!(x.range.magnitude() * (0.2 * radius * radius + x.log_error) < x.error)) return;
+    const bool positive = x.range.lo > 0;
+    other_ = exponential(kept_log(x), RealInterval::whole(), positive ? x.range : -x.range, 0);
+    if (!positive) other_ = turned_around(other_);
     if (other_.error < x.error) form_ = &other_;
   }
   Settled(const Settled&) = delete;

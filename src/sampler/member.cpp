@@ -88,8 +88,11 @@ SamplerData member_data(const SamplerData& family, const Parameters& at, std::st
   member.probes = probes;
   member.report = family.report;
   member.report.expected_trials = 0;
-  for (const MajorantTree& tree : member.exact)
+  for (MajorantTree& tree : member.exact) {
     member.report.expected_trials = std::max(member.report.expected_trials, tree.volume);
+    // What is proved is proved beside the family's albedo, of which the member's is a rounding.
+    tree.status = BoundStatus::estimated, tree.bound_ratio = 0;
+  }
   validate(member);
   return member;
 }

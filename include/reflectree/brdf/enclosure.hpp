@@ -3,10 +3,12 @@
 // proofs rest on it (docs/exactness.md).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
 #include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/parameter.hpp"
 #include "reflectree/math/affine_form.hpp"
 
 namespace reflectree {
@@ -120,33 +122,67 @@ class BrdfEnclosure {
   // Whether the function returns the same, to the last bit, for wi and its image in the plane of wo, where wo
   // has no y: then one of the two is looked at.
   virtual bool is_mirror_symmetric() const { return false; }
+  // Likewise where x and y of all directions are turned around, and where y alone is.
+  virtual bool keeps_half_turns() const { return false; }
+  virtual bool keeps_mirrored_axes() const { return false; }
+};
+
+// What a formula keeps, to the last bit.
+struct ExactSymmetry {
+  bool in_plane_of_wo = false, half_turns = false, mirrored_axes = false;
+};
+inline ExactSymmetry symmetry_of(const BrdfEnclosure& f) {
+  return {f.is_mirror_symmetric(), f.keeps_half_turns(), f.keeps_mirrored_axes()};
+}
+
+// Likewise of a family, whose parameters are forms, too.
+using ParameterForms = std::array<AffineForm, max_parameters>;
+class FamilyEnclosure {
+ public:
+  virtual ~FamilyEnclosure() = default;
+  virtual RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g, const ParameterForms& at) const = 0;
+  // Of all members.
+  virtual ExactSymmetry keeps() const { return {}; }
 };
 
 namespace detail {
 template <class F>
 class FormulaEnclosure final : public BrdfEnclosure {
  public:
-  FormulaEnclosure(F f, bool mirror_symmetric) : f_(std::move(f)), mirror_symmetric_(mirror_symmetric) {}
+  FormulaEnclosure(F f, ExactSymmetry keeps) : f_(std::move(f)), keeps_(keeps) {}
   RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override { return f_(g); }
-  bool is_mirror_symmetric() const override { return mirror_symmetric_; }
+  bool is_mirror_symmetric() const override { return keeps_.in_plane_of_wo; }
+  bool keeps_half_turns() const override { return keeps_.half_turns; }
+  bool keeps_mirrored_axes() const override { return keeps_.mirrored_axes; }
 
  private:
   F f_;
-  bool mirror_symmetric_;
+  ExactSymmetry keeps_;
 };
 }  // namespace detail
 
 // F, whose formula is a template on its scalar, telling of its own enclosure. Where it is isotropic it must be
-// mirror-symmetric as well (tests/sampler/enclosure_test.cpp holds every registered model to it).
+// mirror-symmetric as well; `keeps` says what else it does.
 template <class F>
 struct Enclosed : F {
-  Enclosed(F f) : F(std::move(f)) {}
+  ExactSymmetry keeps;
+  Enclosed(F f, ExactSymmetry also_keeps = {}) : F(std::move(f)), keeps(also_keeps) {}
   BrdfTraits traits() const {
     BrdfTraits traits = F::traits();
-    traits.enclosure = std::make_shared<detail::FormulaEnclosure<F>>(static_cast<const F&>(*this),
-                                                                     traits.isotropic_by_formula);
+    ExactSymmetry all = keeps;
+    all.in_plane_of_wo = traits.isotropic_by_formula;
+    traits.enclosure = std::make_shared<detail::FormulaEnclosure<F>>(static_cast<const F&>(*this), all);
     return traits;
   }
 };
+
+// What every registered model keeps (tests/sampler/enclosure_test.cpp holds them to it): of directions its formula
+// takes squares and products alone, in the frame of its own axis.
+template <class M>
+ExactSymmetry symmetry_of_model(const M& model) {
+  ExactSymmetry keeps{model.traits().isotropic_by_formula, true, true};
+  if constexpr (requires { model.phi; }) keeps.mirrored_axes = model.phi.degrees == 0;
+  return keeps;
+}
 
 }  // namespace reflectree

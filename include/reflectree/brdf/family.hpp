@@ -123,6 +123,8 @@ struct FamilyMember {
 template <class F>
 inline constexpr bool is_member_v<FamilyMember<F>> = true;
 
+class FamilyEnclosure;  // enclosure.hpp
+
 // A family chosen at run time. A value (shared, immutable inside).
 class AnyFamily {
  public:
@@ -146,6 +148,8 @@ class AnyFamily {
   }
   BrdfTraits traits(const Parameters& at) const { return self_->traits_at(at); }
   bool may_be_turned(const Parameters&) const { return self_->traits.isotropic_by_formula; }
+  // Bounds the family over boxes of directions and parameters (enclosure.hpp); empty: nobody can.
+  const std::shared_ptr<const FamilyEnclosure>& enclosure() const { return self_->enclosure; }
   // The member at fixed parameters. Throws Error outside of the ranges.
   AnyBrdf member(const Parameters& at) const;
 
@@ -153,6 +157,7 @@ class AnyFamily {
   struct Interface {
     BrdfTraits traits;
     std::vector<ParameterRange> ranges;
+    std::shared_ptr<const FamilyEnclosure> enclosure;
     virtual ~Interface() = default;
     virtual BrdfTraits traits_at(const Parameters&) const = 0;
     virtual void eval(std::span<const ShadingGeometry<float>>, std::span<const Parameters>,
@@ -180,7 +185,8 @@ class AnyFamily {
         if (one.axis && !all.axis) all.axis = one.axis;
         all.concurrent = all.concurrent && one.concurrent;
       }
-      all.theta_o_factor = nullptr, all.sharp = nullptr, all.albedo = nullptr;
+      all.theta_o_factor = nullptr, all.sharp = nullptr, all.albedo = nullptr, all.enclosure = nullptr;
+      if constexpr (requires { f.enclosure(this->ranges); }) this->enclosure = f.enclosure(this->ranges);
       all.name = family.name;
       if (all.channels < 1 || all.channels > max_channels) {
         throw Error("the family has " + std::to_string(all.channels) + " channels", all.name,

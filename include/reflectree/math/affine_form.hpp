@@ -21,16 +21,17 @@
 namespace reflectree {
 
 struct AffineForm {
-  static constexpr std::size_t variables = 3;
+  // As many as a proof has unknowns at most: two coordinates of the square, two of the viewer, two parameters.
+  static constexpr std::size_t variables = 6;
   using Slopes = std::array<double, variables>;
 
-  // The values at e in [-1, 1]^3: middle + slope . e, up to `error`; all of them lie in `range`.
+  // The values at e in [-1, 1]^6: middle + slope . e, up to `error`; all of them lie in `range`.
   double middle = 0;
   Slopes slope{};
   double error = 0;  // infinite: the range alone is known
   RealInterval range;
-  // Of positive values also their logarithm, as another form: products of many factors that rise and fall
-  // against each other stay narrow there. Unknown where log_error is infinite.
+  // Of values of one sign also the logarithm of their size, as another form: products of many factors that rise and
+  // fall against each other stay narrow there. Unknown where log_error is infinite.
   double log_middle = 0;
   Slopes log_slope{};
   double log_error = detail::infinity;
@@ -52,6 +53,8 @@ struct AffineForm {
   // Anything in the range.
   static AffineForm anything_in(RealInterval range);
 
+  // Whether they are the same form, and so the same number at every point.
+  friend bool operator==(const AffineForm&, const AffineForm&) = default;
   friend AffineForm operator-(const AffineForm& a);
   friend AffineForm operator+(const AffineForm& a, const AffineForm& b);
   friend AffineForm operator-(const AffineForm& a, const AffineForm& b);
@@ -71,6 +74,7 @@ AffineForm log1p(const AffineForm& x);
 AffineForm pow(const AffineForm& x, const AffineForm& y);  // x >= 0
 AffineForm sin(const AffineForm& x);
 AffineForm cos(const AffineForm& x);
+AffineForm asinh(const AffineForm& x);
 AffineForm acos(const AffineForm& x);
 AffineForm atan2(const AffineForm& y, const AffineForm& x);
 // Of two expressions that agree, up to 8 roundings, where s is 0: there the sign bit of s may say either.
@@ -80,6 +84,8 @@ AffineForm flip_sign(const AffineForm& x, const AffineForm& s);
 
 // first + weights . x, summed in any order, products fused or not.
 AffineForm weighted_sum(float first, std::span<const float> weights, std::span<const AffineForm> x);
+// What holds every number that one of two forms holds; narrow where both hold about the same.
+AffineForm either(const AffineForm& a, const AffineForm& b);
 // Of two forms of the same number the better parts.
 AffineForm narrower(const AffineForm& a, const AffineForm& b);
 // x as it stands, or more or less by up to a share of itself.

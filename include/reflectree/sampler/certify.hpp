@@ -6,6 +6,7 @@
 #include <string>
 
 #include "reflectree/brdf/any_brdf.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/host.hpp"
 #include "reflectree/sampler/sampler_data.hpp"
 
@@ -34,6 +35,7 @@ struct Certification {
 
 // Why certify() cannot prove anything about this function, in words; empty where it can.
 std::string no_proof(const AnyBrdf& f);
+std::string no_proof(const AnyFamily& family);
 
 // Slabs whose leaves are all proved become certified; their bounds rise where they must. A slab with an open
 // leaf stays estimated, and a note of the report says how many there are; its bounds rise only where a value
@@ -41,6 +43,8 @@ std::string no_proof(const AnyBrdf& f);
 // answer, for options out of range, and where f returns values that its own enclosure does not hold; Cancelled
 // when the host says so: `data` is then as it was.
 Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options = {},
+                      const Host& host = {});
+Certification certify(SamplerData& data, const AnyFamily& family, const CertifyOptions& options = {},
                       const Host& host = {});
 
 }  // namespace reflectree

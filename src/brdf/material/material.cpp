@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/brdf/material/material.hpp"
 
 #include <algorithm>
@@ -118,6 +119,8 @@ std::vector<ParameterRange> ranges_of(const Material& material) {
 // A weighted sum of terms that vary and of others.
 class SumFamily {
  public:
+  // As eval() forms it, term after term.
+  class Enclosure;
   struct Term {
     float weight;
     std::optional<AnyFamily> varying;
@@ -165,11 +168,45 @@ class SumFamily {
     }
     return *sum;
   }
+  std::shared_ptr<const FamilyEnclosure> enclosure(const std::vector<ParameterRange>&) const;
 
  private:
   std::vector<Term> terms_;
   int channels_ = 1;
 };
+
+class SumFamily::Enclosure final : public FamilyEnclosure {
+ public:
+  explicit Enclosure(std::vector<Term> terms) : terms_(std::move(terms)) {}
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g, const ParameterForms& at) const override {
+    RgbT<AffineForm> sum;
+    for (const Term& term : terms_) {
+      sum = sum + AffineForm(term.weight) * (term.varying ? (*term.varying->enclosure())(g, at)
+                                                          : (*term.fixed->traits().enclosure)(g));
+    }
+    return sum;
+  }
+  ExactSymmetry keeps() const override {
+    ExactSymmetry all{true, true, true};
+    for (const Term& term : terms_) {
+      const ExactSymmetry one =
+          term.varying ? term.varying->enclosure()->keeps() : symmetry_of(*term.fixed->traits().enclosure);
+      all = {all.in_plane_of_wo && one.in_plane_of_wo, all.half_turns && one.half_turns,
+             all.mirrored_axes && one.mirrored_axes};
+    }
+    return all;
+  }
+
+ private:
+  std::vector<Term> terms_;
+};
+
+std::shared_ptr<const FamilyEnclosure> SumFamily::enclosure(const std::vector<ParameterRange>&) const {
+  const bool whole = std::all_of(terms_.begin(), terms_.end(), [](const Term& term) {
+    return term.varying ? bool(term.varying->enclosure()) : bool(term.fixed->traits().enclosure);
+  });
+  return whole ? std::make_shared<Enclosure>(terms_) : nullptr;
+}
 
 }  // namespace
 

@@ -77,10 +77,9 @@ class SumEnclosure final : public BrdfEnclosure {
   bool whole() const {
     return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return bool(part.enclosure); });
   }
-  bool is_mirror_symmetric() const override {
-    return std::all_of(parts_.begin(), parts_.end(),
-                       [](const Part& part) { return part.enclosure->is_mirror_symmetric(); });
-  }
+  bool is_mirror_symmetric() const override { return all(&BrdfEnclosure::is_mirror_symmetric); }
+  bool keeps_half_turns() const override { return all(&BrdfEnclosure::keeps_half_turns); }
+  bool keeps_mirrored_axes() const override { return all(&BrdfEnclosure::keeps_mirrored_axes); }
   RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
     RgbT<AffineForm> sum;
     for (const Part& part : parts_) sum = sum + AffineForm(part.weight) * (*part.enclosure)(g);
@@ -92,6 +91,10 @@ class SumEnclosure final : public BrdfEnclosure {
     float weight;
     std::shared_ptr<const BrdfEnclosure> enclosure;
   };
+  bool all(bool (BrdfEnclosure::*keeps)() const) const {
+    return std::all_of(parts_.begin(), parts_.end(),
+                       [&](const Part& part) { return ((*part.enclosure).*keeps)(); });
+  }
   std::vector<Part> parts_;
 };
 

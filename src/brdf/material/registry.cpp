@@ -27,7 +27,8 @@ ModelInfo entry() {
   };
   // The model's own formula encloses itself.
   info.make = [](std::span<const Rgb> values) -> AnyBrdf {
-    return Enclosed<M>(model_from_values<M>(values));
+    const M model = model_from_values<M>(values);
+    return Enclosed<M>(model, symmetry_of_model(model));
   };
   info.make_family = [](std::span<const Rgb> values, std::span<const VariedValues> varied,
                         const std::vector<ParameterRange>& ranges, const std::string& name) -> AnyFamily {

@@ -20,18 +20,35 @@ using namespace detail;
 
 // A slab with its leaves as they are sampled.
 struct SlabProof {
-  CosineRange cosines;
+  KnownRange known;
   std::span<const PackedLeaf> leaves;
   std::vector<LeafProof> proofs;
 };
 
 // In order of the partition; slabs of one coordinate are packed in order of the cosine.
-std::vector<SlabProof> slabs_of(const PackedSampler& packed) {
+std::vector<SlabProof> slabs_of(const SamplerData& data, const PackedSampler& packed) {
   std::vector<SlabProof> slabs;
   const std::vector<float>& borders = packed.exact.lookup.borders();
-  for (std::size_t i = packed.exact.slabs.size(); i-- > 0;) {
+  const std::vector<SlabBox> boxes = slab_boxes(data.exact_partition);
+  const std::size_t axes = data.exact_partition.coordinates.size(), of_viewer = axes - data.parameters.size();
+  for (std::size_t s = 0; s < boxes.size(); ++s) {
+    const std::size_t i = axes == 1 ? boxes.size() - 1 - s : s;
+    KnownRange known{};
+    if (axes == 1) {
+      known.lo = borders[i], known.hi = min(borders[i + 1], 1.f);
+    } else {  // as SlabTree compares them
+      known.lo = max(std::cos(boxes[s].hi[0]), min_cos_theta_o), known.hi = std::cos(boxes[s].lo[0]);
+    }
+    for (std::size_t k = 1; k < axes; ++k) {
+      float lo = boxes[s].lo[k], hi = boxes[s].hi[k];
+      if (k >= of_viewer) {
+        const KnownParameter& parameter = data.parameters[k - of_viewer];
+        lo = value_of(parameter, lo), hi = value_of(parameter, hi);
+      }
+      known.beyond[k - 1] = {double(lo), double(hi)};
+    }
     const PackedSlab& slab = packed.exact.slabs[i];
-    SlabProof proof{{borders[i], min(borders[i + 1], 1.f)}, {}, {}};
+    SlabProof proof{known, {}, {}};
     proof.leaves = std::span(packed.exact.leaves).subspan(slab.first, slab.count);
     proof.proofs.resize(slab.count);
     slabs.push_back(std::move(proof));
@@ -52,12 +69,15 @@ void check_enclosure(const EnclosedField& field, const std::vector<SlabProof>& s
   constexpr int points = 16;
   Pcg32 u(17);
   for (const SlabProof& slab : slabs) {
-    const Elevations theta = field.elevations(slab.cosines);
+    const ProofBox whole = field.whole(slab.known);
     for (int i = 0; i < points; ++i) {
       const PackedLeaf& leaf = slab.leaves[u() % slab.leaves.size()];
-      const ProofPoint at{linear_mix(to_unit_double(u()), theta.lo, theta.hi), double(to_unit_float(u())),
-                          double(to_unit_float(u()))};
-      check_value(field.over({at, at}, slab.cosines, leaf), field.at(at, slab.cosines, leaf));
+      ProofPoint at{};
+      for (std::size_t k = 0; k < field.axes(); ++k) {
+        at[k] = k == 1 || k == 2 ? double(to_unit_float(u()))
+                                 : linear_mix(to_unit_double(u()), whole.lo[k], whole.hi[k]);
+      }
+      check_value(field.over({at, at}, slab.known, leaf), field.at(at, slab.known, leaf));
     }
   }
 }
@@ -82,7 +102,7 @@ void prove(std::vector<SlabProof>& slabs, const std::vector<Task>& tasks, const 
         SlabProof& slab = slabs[tasks[t].slab];
         LeafProof& kept = slab.proofs[tasks[t].leaf];
         try {
-          LeafProof proof = prove_leaf(field, slab.cosines, slab.leaves[tasks[t].leaf], limits);
+          LeafProof proof = prove_leaf(field, slab.known, slab.leaves[tasks[t].leaf], limits);
           proof.boxes += kept.boxes;
           proof.seen = std::max(proof.seen, kept.seen);
           const bool better = !kept.proved || (proof.proved && proof.bound < kept.bound);
@@ -154,23 +174,32 @@ std::string no_proof(const AnyBrdf& f) {
            "and functions with bound() or lipschitz()";
   if (traits.channels != 1 && traits.channels != 3)
     return "no interval form of a function of this many channels";
-  if (!traits.isotropic_by_formula)
-    return "no interval form of the geometry where the azimuth of the viewer matters";
   return "";
 }
 
-Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options,
-                      const Host& the_host) {
+std::string no_proof(const AnyFamily& family) {
+  if (!family.enclosure()) {
+    return "no interval form of this family: models whose numbers vary have one, where no azimuth varies and two "
+           "widths do not meet";
+  }
+  if (family.channels() != 1 && family.channels() != 3)
+    return "no interval form of a function of this many channels";
+  return "";
+}
+
+namespace {
+
+// f: a function or a family.
+template <class F>
+Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options, const Host& the_host) {
   check(options);
   const Host host = completed(the_host);
-  std::string refusal = no_proof(f);
-  if (refusal.empty() && !data.frame.isotropic()) refusal = "no interval form of viewers with an azimuth";
-  if (refusal.empty() && !data.domain.half()) refusal = "no interval form of whole squares";
+  const std::string refusal = no_proof(f);
   if (!refusal.empty()) throw Error(refusal, data.material, "its bounds stay estimated");
   host.stage("proving the bounds");
   const PackedSampler packed = pack(data);
   const EnclosedField field(f, packed);
-  std::vector<SlabProof> slabs = slabs_of(packed);
+  std::vector<SlabProof> slabs = slabs_of(data, packed);
   check_enclosure(field, slabs);
   std::vector<Task> tasks;
   for (std::uint32_t s = 0; s < slabs.size(); ++s) {
@@ -226,6 +255,16 @@ Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions&
   data = std::move(proved);
   host.progress(1);
   return out;
+}
+
+}  // namespace
+
+Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options, const Host& host) {
+  return certify_any(data, f, options, host);
+}
+Certification certify(SamplerData& data, const AnyFamily& family, const CertifyOptions& options,
+                      const Host& host) {
+  return certify_any(data, family, options, host);
 }
 
 }  // namespace reflectree

@@ -38,71 +38,65 @@ void check_value(const EnclosedPoint& enclosed, const PointValue& value) {
               "give it the enclosure of its own formula, or none");
 }
 
+EnclosedField::EnclosedField(const PackedSampler& packed, int channels, bool turned, ExactSymmetry keeps)
+    : packed_(packed),
+      channels_(channels),
+      turned_(turned),
+      viewer_(packed.viewer, turned_),
+      both_sides_(packed.domain.half() && !(turned_ && keeps.in_plane_of_wo)),
+      images_(viewer_.images(keeps)) {}
+
 EnclosedField::EnclosedField(const AnyBrdf& f, const PackedSampler& packed)
-    : f_(f),
-      enclosure_(f.traits().enclosure),
-      mirror_symmetric_(enclosure_->is_mirror_symmetric()),
-      packed_(packed) {}
-
-Elevations EnclosedField::elevations(CosineRange c) const {
-  const RealInterval longer = RealInterval(1) + RealInterval(-length_tolerance, length_tolerance);
-  const RealInterval theta = acos(RealInterval(c.lo, c.hi) / longer);
-  return {std::max(theta.lo, 0.), std::min(theta.hi, 0.5 * pi_v<double>)};
+    : EnclosedField(packed, f.channels(), f.traits().isotropic_by_formula && packed.viewer.frame.isotropic(),
+                    symmetry_of(*f.traits().enclosure)) {
+  f_ = &f, enclosure_ = f.traits().enclosure;
+}
+EnclosedField::EnclosedField(const AnyFamily& family, const PackedSampler& packed)
+    : EnclosedField(packed, family.channels(),
+                    family.traits().isotropic_by_formula && packed.viewer.frame.isotropic(),
+                    family.enclosure()->keeps()) {
+  family_ = &family, family_enclosure_ = family.enclosure();
 }
 
-// The lines between the table's nodes, as they are looked up, lie between two lines of one slope; the nodes say
-// how far apart.
-AffineForm EnclosedField::albedo_over(const AffineForm& cosine) const {
-  const PackedAlbedo& table = packed_.viewer.albedo;
-  const std::vector<float>& x = table.lookup.borders();
-  const float lo = max(float(cosine.range.lo) * (1 - 0x1p-22f), min_cos_theta_o);
-  const float hi = min(float(cosine.range.hi) * (1 + 0x1p-22f), 1.f);
-  const std::size_t first = table.lookup(lo), last = table.lookup(hi);
-  const auto value = [&](std::size_t i, double c) {
-    return double(table.pieces[i].base) + double(table.pieces[i].slope) * c;
-  };
-  const double a = double(lo), b = double(hi);
-  const double alpha =
-      b > a ? (value(last, b) - value(first, a)) / (b - a) : double(table.pieces[first].slope);
-  RealInterval offset{infinity, -infinity}, range{infinity, -infinity};
-  double rounding = 0;
-  for (std::size_t i = first; i <= last; ++i) {
-    for (const double c : {i == first ? a : double(x[i]), i == last ? b : double(x[i + 1])}) {
-      const double v = value(i, c), product = std::abs(double(table.pieces[i].slope) * c);
-      // fl(base + fl(slope c)), and the doubles here.
-      rounding = std::max(rounding, (product + std::abs(v)) * 0x1.01p-24);
-      offset = hull(offset, RealInterval(v - alpha * c, v - alpha * c)),
-      range = hull(range, RealInterval(v, v));
-    }
-  }
-  const auto wider = [rounding](RealInterval r) { return RealInterval(r.lo - rounding, r.hi + rounding); };
-  return linear_enclosure(cosine, alpha, wider(offset), wider(range));
+ProofBox EnclosedField::whole(const KnownRange& known) const {
+  const Elevations theta = viewer_.elevations(known);
+  ProofBox box{{theta.lo, 0, 0}, {theta.hi, 1, 1}};
+  const auto beyond = viewer_.unknowns(known);
+  for (std::size_t i = 3; i < axes(); ++i) box.lo[i] = beyond[i - 3].lo, box.hi[i] = beyond[i - 3].hi;
+  return box;
 }
 
-AffineForm EnclosedField::target_over(const DomainPointT<AffineForm>& point,
-                                      const ShadingGeometry<AffineForm>& g) const {
+AffineForm EnclosedField::value_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g,
+                                     const ViewerForms& v) const {
+  if (family_)
+    return reduced(packed_.target, (*family_enclosure_)(g, v.parameters), channels_) * point.projected_area;
   if (point.area_by_cosine) {
     // The order of the products is another one: 32 roundings.
     if (const auto f_cos = enclosure_->times_cosine(g))
-      return widened(reduced(packed_.target, *f_cos, f_.channels()) * *point.area_by_cosine, 0x1p-19);
+      return widened(reduced(packed_.target, *f_cos, channels_) * *point.area_by_cosine, 0x1p-19);
   }
-  return reduced(packed_.target, (*enclosure_)(g), f_.channels()) * point.projected_area;
+  return reduced(packed_.target, (*enclosure_)(g), channels_) * point.projected_area;
 }
 
-Vec3<AffineForm> EnclosedField::viewer_over(double theta_lo, double theta_hi, CosineRange cosines) const {
-  const AffineForm theta = AffineForm::variable(0, theta_lo, theta_hi);
-  AffineForm c = widened(cos(theta), length_tolerance);
-  const AffineForm s = widened(sin(theta), length_tolerance);
-  c.range = intersection(c.range, {double(cosines.lo), double(cosines.hi)});
-  return {s, AffineForm(0), c};
+// Of all images, whose values are about the same, what holds each.
+AffineForm EnclosedField::target_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g,
+                                      const ViewerForms& v) const {
+  AffineForm out;
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    const AffineForm t = value_over(point, viewer_.for_caller(g, v, images_[i]), v);
+    out = i == 0 ? t : either(out, t);
+  }
+  return out;
 }
 
-AffineForm EnclosedField::albedo(double theta_lo, double theta_hi, CosineRange cosines) const {
-  return albedo_over(viewer_over(theta_lo, theta_hi, cosines).z);
+AffineForm EnclosedField::albedo(double theta_lo, double theta_hi, const KnownRange& known) const {
+  return viewer_.over({AffineForm::variable(0, theta_lo, theta_hi)}, known).albedo;
 }
 
-EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const {
-  const Vec3<AffineForm> wo = viewer_over(box.lo[0], box.hi[0], cosines);
+EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const {
+  std::array<AffineForm, 2 + max_parameters> unknown{AffineForm::variable(0, box.lo[0], box.hi[0])};
+  for (std::size_t i = 3; i < axes(); ++i) unknown[i - 2] = AffineForm::variable(i, box.lo[i], box.hi[i]);
+  const ViewerForms viewer = viewer_.over(unknown, known);
 
   const LeafCell<float> cell = cell_of(leaf);
   const LeafCell<AffineForm> forms{
@@ -114,26 +108,43 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
-  const DomainPointT<AffineForm> lifted = lift_box(packed_.domain, wo, at.p);
-  EnclosedPoint out{target_over(lifted, lifted.geometry), std::nullopt, albedo_over(wo.z) * at.height};
-  if (packed_.domain.half() && !mirror_symmetric_) {
-    out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry));
+  const DomainPointT<AffineForm> lifted = lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
+  EnclosedPoint out{target_over(lifted, lifted.geometry, viewer), std::nullopt, viewer.albedo * at.height};
+  if (both_sides_) {
+    out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry), viewer);
   }
   return out;
 }
 
-PointValue EnclosedField::at(const ProofPoint& point, CosineRange cosines, const PackedLeaf& leaf) const {
-  const float c = clamp(float(std::cos(point[0])), cosines.lo, cosines.hi);
-  const Direction wo{float(std::sin(point[0])), 0, c};
+PointValue EnclosedField::at(const ProofPoint& point, const KnownRange& known, const PackedLeaf& leaf) const {
+  const float c = clamp(float(std::cos(point[0])), known.lo, known.hi), s = float(std::sin(point[0]));
+  Direction wo{s, 0, c};
+  if (viewer_.sees_azimuth()) {
+    wo = {float(double(s) * std::cos(point[3])), float(double(s) * std::sin(point[3])), c};
+    wo = turn(wo, packed_.viewer.cos_axis, packed_.viewer.sin_axis);
+  }
+  Parameters parameters{};
+  const PackedFamily& family = packed_.viewer.family;
+  for (std::size_t i = 0, first = axes() - family.count; i < family.count; ++i) {
+    const RealInterval& range = known.beyond[viewer_.first_parameter() + i];
+    const double coordinate = point[first + i];
+    const double value = family.parameters[i].logarithmic ? std::exp(coordinate) : coordinate;
+    parameters[i] = clamp(float(value), float(range.lo), float(range.hi));
+  }
+  Incidence in;
+  PointValue out;
+  if (!find_incidence(packed_, wo, parameters, in)) return out;
+  const Domain domain = domain_at(packed_.viewer, packed_.domain, in);
   const bool half = packed_.domain.half();
   const PointInLeaf at = point_at(leaf, half, float(point[1]), float(point[2]));
-  PointValue out;
   for (const bool mirrored : {false, true}) {
     if (mirrored && !half) break;
-    const DomainPoint lifted = lift(packed_.domain, wo, at.p, mirrored);
-    out.target = max(out.target, packed_.target(f_(lifted.geometry)) * lifted.projected_area);
+    const DomainPoint lifted = lift(domain, in.wo, at.p, mirrored);
+    const ShadingGeometry<float> g = known_geometry(in, lifted.geometry, turned_);
+    const Spectrum value = family_ ? (*family_)(g, parameters) : (*f_)(g);
+    out.target = max(out.target, packed_.target(value) * lifted.projected_area);
   }
-  out.unit = packed_.viewer.albedo.at(c) * (at.height / leaf.height);
+  out.unit = in.albedo * (at.height / leaf.height);
   return out;
 }
 

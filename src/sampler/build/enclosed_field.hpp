@@ -5,28 +5,18 @@
 #include <array>
 #include <optional>
 
-#include "reflectree/brdf/enclosure.hpp"
-#include "reflectree/sampler/packed_sampler.hpp"
-#include "reflectree/sampler/sampler_data.hpp"
-#include "reflectree/sampler/square/enclosed_map.hpp"
+#include "enclosed_viewer.hpp"
+#include "reflectree/brdf/family.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
 
 namespace reflectree::detail {
 
-// theta_o in radians, then shares of the leaf's cell along x and y.
+// theta_o in radians, shares of the leaf's cell along x and y, then what else is unknown of the viewer: its azimuth,
+// the coordinates of a family's parameters. As many as the field says; all others are 0.
+inline constexpr std::size_t most_axes = AffineForm::variables;
+using ProofPoint = std::array<double, most_axes>;
 struct ProofBox {
-  static constexpr std::size_t axes = 3;
-  std::array<double, axes> lo{}, hi{};
-};
-using ProofPoint = std::array<double, ProofBox::axes>;
-
-// The viewers of a slab: floats cos_theta_o of [lo, hi].
-struct CosineRange {
-  float lo, hi;
-};
-// The elevations of wo that hold them.
-struct Elevations {
-  double lo, hi;
+  ProofPoint lo{}, hi{};
 };
 
 struct EnclosedPoint {
@@ -44,10 +34,14 @@ void check_value(const EnclosedPoint& enclosed, const PointValue& value);
 
 class EnclosedField {
  public:
-  // Keeps f's enclosure and the references.
+  // Keep the enclosure and the references.
   EnclosedField(const AnyBrdf& f, const PackedSampler& packed);
+  EnclosedField(const AnyFamily& family, const PackedSampler& packed);
 
-  Elevations elevations(CosineRange cosines) const;
+  std::size_t axes() const { return 2 + viewer_.axes(); }
+  Elevations elevations(const KnownRange& known) const { return viewer_.elevations(known); }
+  // All viewers of a slab, and the whole leaf.
+  ProofBox whole(const KnownRange& known) const;
   LeafCell<float> cell_of(const PackedLeaf& leaf) const { return unpack(leaf, packed_.domain.half()); }
   // Whether the square holds wi about the normal, not half vectors and the like.
   bool is_of_directions() const {
@@ -55,22 +49,31 @@ class EnclosedField {
     return kind == DomainKind::projected_disk || kind == DomainKind::equal_area ||
            kind == DomainKind::stretched;
   }
-  EnclosedPoint over(const ProofBox& box, CosineRange cosines, const PackedLeaf& leaf) const;
-  // The stored albedo, over elevations.
-  AffineForm albedo(double theta_lo, double theta_hi, CosineRange cosines) const;
+  EnclosedPoint over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const;
+  // The stored albedo, over elevations; of viewers without an azimuth.
+  AffineForm albedo(double theta_lo, double theta_hi, const KnownRange& known) const;
   // As a sampler computes it.
-  PointValue at(const ProofPoint& point, CosineRange cosines, const PackedLeaf& leaf) const;
+  PointValue at(const ProofPoint& point, const KnownRange& known, const PackedLeaf& leaf) const;
 
  private:
-  Vec3<AffineForm> viewer_over(double theta_lo, double theta_hi, CosineRange cosines) const;
-  AffineForm albedo_over(const AffineForm& cosine) const;
-  // g: the point's geometry, or its image.
-  AffineForm target_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g) const;
+  // g: the point's geometry, or its image; of value_over in the frame of the function.
+  AffineForm target_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g,
+                         const ViewerForms& v) const;
+  AffineForm value_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g,
+                        const ViewerForms& v) const;
 
-  const AnyBrdf& f_;
+  EnclosedField(const PackedSampler& packed, int channels, bool turned, ExactSymmetry keeps);
+
+  const AnyBrdf* f_ = nullptr;  // or
+  const AnyFamily* family_ = nullptr;
   std::shared_ptr<const BrdfEnclosure> enclosure_;
-  bool mirror_symmetric_;
+  std::shared_ptr<const FamilyEnclosure> family_enclosure_;
   const PackedSampler& packed_;
+  int channels_;
+  bool turned_;  // f is evaluated where wo has no y
+  EnclosedViewer viewer_;
+  bool both_sides_;  // of half squares
+  std::vector<ViewerImage> images_;
 };
 
 }  // namespace reflectree::detail

@@ -11,14 +11,14 @@ namespace {
 // height and its mass are rounded.
 constexpr double margin = 0x1p-19;
 
-// Of theta_o and across the leaf. Floats beside narrower boxes need not lie in them.
-constexpr double smallest_width[ProofBox::axes] = {1e-10, 0x1p-23, 0x1p-23};
+// Of theta_o, across the leaf, and of what else is known. Floats beside narrower boxes need not lie in them.
+constexpr double smallest_width[most_axes] = {1e-10, 0x1p-23, 0x1p-23, 1e-7, 1e-7, 1e-7};
 
 struct OpenBox {
   ProofBox box;
   EnclosedPoint point;
   // What halving the box along each axis would bring, as last tried; falls with the square of the side.
-  std::array<double, ProofBox::axes> gain{};
+  std::array<double, most_axes> gain{};
   int age = 0;  // halvings since it was tried
 };
 
@@ -30,16 +30,21 @@ double upper(const EnclosedPoint& p, double bound) {
 
 class Proof {
  public:
-  Proof(const EnclosedField& field, CosineRange cosines, const PackedLeaf& leaf, const ProofLimits& limits)
-      : field_(field), cosines_(cosines), leaf_(leaf), cell_(field.cell_of(leaf)), limits_(limits) {
+  Proof(const EnclosedField& field, const KnownRange& known, const PackedLeaf& leaf, const ProofLimits& limits)
+      : field_(field),
+        known_(known),
+        leaf_(leaf),
+        cell_(field.cell_of(leaf)),
+        limits_(limits),
+        axes_(field.axes()),
+        whole_(field.whole(known)) {
     out_.bound = double(leaf.height);
   }
 
   LeafProof run() {
-    const Elevations theta = field_.elevations(cosines_);
-    open({{theta.lo, 0, 0}, {theta.hi, 1, 1}});
+    open(whole_);
     look_around(boxes_.back());
-    climb(theta);
+    climb();
     while (!boxes_.empty()) {
       if (out_.boxes >= limits_.boxes) return settle();
       ease();
@@ -65,22 +70,23 @@ class Proof {
 
   EnclosedPoint enclose(const ProofBox& box) {
     ++out_.boxes;
-    return field_.over(box, cosines_, leaf_);
+    return field_.over(box, known_, leaf_);
   }
   void open(const ProofBox& box) { boxes_.push_back({box, enclose(box)}); }
 
   // Values at corners and between, so that something was seen however quick the proof is.
   void look_around(const OpenBox& b) {
-    for (int i = 0; i < 27; ++i) {
-      const std::array<int, ProofBox::axes> at{i % 3, i / 3 % 3, i / 9};
-      ProofPoint point;
-      for (std::size_t k = 0; k < ProofBox::axes; ++k)
-        point[k] = b.box.lo[k] + 0.5 * at[k] * (b.box.hi[k] - b.box.lo[k]);
+    int places = 1;
+    for (std::size_t k = 0; k < axes_; ++k) places *= 3;
+    for (int i = 0; i < places; ++i) {
+      ProofPoint point{};
+      for (std::size_t k = 0, rest = std::size_t(i); k < axes_; ++k, rest /= 3)
+        point[k] = b.box.lo[k] + 0.5 * double(rest % 3) * (b.box.hi[k] - b.box.lo[k]);
       see(b, point);
     }
   }
   PointValue look_at(const ProofPoint& point) {
-    const PointValue v = field_.at(point, cosines_, leaf_);
+    const PointValue v = field_.at(point, known_, leaf_);
     if (v.unit > 0 && double(v.target) > out_.seen * double(v.unit)) {
       out_.seen = double(v.target) / double(v.unit), best_ = point;
     }
@@ -94,8 +100,8 @@ class Proof {
   // Values at the middle, and at the corner to which the difference rises.
   void look_into(const OpenBox& b) {
     const AffineForm::Slopes rise = slopes_of_difference(b.point.target, proved_bound(), b.point.unit);
-    ProofPoint middle, corner;
-    for (std::size_t i = 0; i < ProofBox::axes; ++i) {
+    ProofPoint middle{}, corner{};
+    for (std::size_t i = 0; i < axes_; ++i) {
       middle[i] = 0.5 * (b.box.lo[i] + b.box.hi[i]);
       corner[i] = rise[i] > 0 ? b.box.hi[i] : b.box.lo[i];
     }
@@ -126,7 +132,7 @@ class Proof {
   bool is_far(const OpenBox& b) const { return excess(b.point) > 0.7; }
   // Sides as the maps see them: towards grazing everything goes by the ratio of cosines, and near the rim and
   // where the azimuth is a right angle there are layers as thin as the cosine of wo; the pole is a point.
-  using Sides = std::array<double, ProofBox::axes>;
+  using Sides = std::array<double, most_axes>;
   Sides sides(const OpenBox& b) const {
     const double c0 = std::cos(b.box.lo[0]), c1 = std::max(std::cos(b.box.hi[0]), 1e-6);
     const auto place = [&](std::size_t axis, double share) {
@@ -141,13 +147,15 @@ class Proof {
     const double near_x = of_directions ? 1 + x0 : x0 * x1 <= 0 ? 0 : std::min(std::abs(x0), std::abs(x1));
     const double far_x = of_directions ? 1 + x1 : std::max(std::abs(x0), std::abs(x1));
     const double inner = std::min(y0, y1), outer = std::max(y0, y1);
-    return {std::log(c0 / c1) + b.box.hi[0] - b.box.lo[0],
-            std::max(1.5 * (x1 - x0), 0.5 * layer(near_x, far_x)),
-            std::max(0.5 * layer(1 - outer, 1 - inner), std::log(outer / std::max(inner, outer / 8)))};
+    Sides side{std::log(c0 / c1) + b.box.hi[0] - b.box.lo[0],
+               std::max(1.5 * (x1 - x0), 0.5 * layer(near_x, far_x)),
+               std::max(0.5 * layer(1 - outer, 1 - inner), std::log(outer / std::max(inner, outer / 8)))};
+    for (std::size_t i = 3; i < axes_; ++i) side[i] = b.box.hi[i] - b.box.lo[i];
+    return side;
   }
-  static std::size_t longest_axis(const OpenBox& b, const Sides& side) {
+  std::size_t longest_axis(const OpenBox& b, const Sides& side) const {
     std::size_t axis = 0;
-    for (std::size_t i = 1; i < ProofBox::axes; ++i) {
+    for (std::size_t i = 1; i < axes_; ++i) {
       if (may_halve(b, i) && (side[i] > side[axis] || !may_halve(b, axis))) axis = i;
     }
     return axis;
@@ -158,7 +166,7 @@ class Proof {
   void divide(const OpenBox& b) {
     constexpr int trusted = 2;
     std::size_t axis = 0;
-    for (std::size_t i = 1; i < ProofBox::axes; ++i) {
+    for (std::size_t i = 1; i < axes_; ++i) {
       if (may_halve(b, i) && (b.gain[i] > b.gain[axis] || !may_halve(b, axis))) axis = i;
     }
     if (!may_halve(b, axis)) {
@@ -176,7 +184,7 @@ class Proof {
         return excess(two[0].point) + excess(two[1].point);
       };
       double least = left(chosen);
-      for (std::size_t i = 0, longest = axis; i < ProofBox::axes; ++i) {
+      for (std::size_t i = 0, longest = axis; i < axes_; ++i) {
         if (i == longest || !may_halve(b, i) || side[i] < thinnest * side[longest]) continue;
         const std::array<OpenBox, 2> tried = halves(b, i);
         if (left(tried) < 0.95 * least) least = left(tried), axis = i, chosen = tried;
@@ -187,9 +195,9 @@ class Proof {
       for (OpenBox& half : chosen) half.gain[axis] *= 0.25, ++half.age;
     } else {
       const double here = upper(b.point, proved_bound());
-      std::array<double, ProofBox::axes> gain{};
+      std::array<double, most_axes> gain{};
       double most = -infinity;
-      for (std::size_t i = 0; i < ProofBox::axes; ++i) {
+      for (std::size_t i = 0; i < axes_; ++i) {
         if (!may_halve(b, i)) continue;
         const std::array<OpenBox, 2> tried = halves(b, i);
         const double left = std::max(upper(tried[0].point, proved_bound()), 0.) +
@@ -204,11 +212,11 @@ class Proof {
   }
 
   // From the best place that was seen, by steps along the axes: what the ratio is held against.
-  void climb(const Elevations& theta) {
-    const std::array<double, ProofBox::axes> lo{theta.lo, 0, 0}, hi{theta.hi, 1, 1};
+  void climb() {
+    const ProofPoint &lo = whole_.lo, &hi = whole_.hi;
     for (double step = 0.125; step > 0.002; step *= 0.5) {
-      for (int k = 0; k < 12; ++k) {
-        const auto axis = std::size_t(k / 2 % 3);
+      for (std::size_t k = 0; k < 4 * axes_; ++k) {
+        const std::size_t axis = k / 2 % axes_;
         ProofPoint next = best_;
         next[axis] =
             std::clamp(next[axis] + (k % 2 ? step : -step) * (hi[axis] - lo[axis]), lo[axis], hi[axis]);
@@ -234,10 +242,12 @@ class Proof {
   }
 
   const EnclosedField& field_;
-  CosineRange cosines_;
+  KnownRange known_;
   const PackedLeaf& leaf_;
   LeafCell<float> cell_;
   ProofLimits limits_;
+  std::size_t axes_;
+  ProofBox whole_;
   double tolerance_ = 0;
   LeafProof out_;
   ProofPoint best_{};
@@ -246,9 +256,9 @@ class Proof {
 
 }  // namespace
 
-LeafProof prove_leaf(const EnclosedField& field, CosineRange cosines, const PackedLeaf& leaf,
+LeafProof prove_leaf(const EnclosedField& field, const KnownRange& known, const PackedLeaf& leaf,
                      const ProofLimits& limits) {
-  return Proof(field, cosines, leaf, limits).run();
+  return Proof(field, known, leaf, limits).run();
 }
 
 }  // namespace reflectree::detail

@@ -23,7 +23,7 @@ struct LeafProof {
 };
 
 // Throws Error where a value that f returns lies outside of what its enclosure says.
-LeafProof prove_leaf(const EnclosedField& field, CosineRange cosines, const PackedLeaf& leaf,
+LeafProof prove_leaf(const EnclosedField& field, const KnownRange& known, const PackedLeaf& leaf,
                      const ProofLimits& limits);
 
 }  // namespace reflectree::detail

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,18 +21,36 @@ namespace reflectree {
 enum class ModelClass { physical, approximate, experimental };
 const char* name_of(ModelClass model_class);
 
+// The numbers of a model: floats, or what its template was given.
+template <class M>
+struct NumberIn {
+  using type = float;
+};
+template <template <class> class Model, class N>
+struct NumberIn<Model<N>> {
+  using type = N;
+};
+// The same model with other numbers.
+template <class M, class N>
+struct WithNumber {};
+template <template <class> class Model, class Old, class N>
+struct WithNumber<Model<Old>, N> {
+  using type = Model<N>;
+};
+
 // A parameter of model M: a member, float or Rgb, with its range (per channel, borders included).
 // The default is the member's initialiser. A pair NAME_x, NAME_y, one after the other, can be given together
 // as NAME, and is printed so where both are equal.
 template <class M>
 struct ModelParameter {
+  using Number = typename NumberIn<M>::type;
   std::string_view name;
   // A number, a colour, one of two widths, or an azimuth.
   struct Width {
-    Widths M::*widths;
-    float Widths::*along;
+    WidthsOf<Number> M::*widths;
+    Number WidthsOf<Number>::*along;
   };
-  std::variant<float M::*, Rgb M::*, Width, Azimuth M::*> member;
+  std::variant<Number M::*, Rgb M::*, Width, Azimuth M::*> member;
   float lo = 0, hi = 1;
   std::string_view unit;  // "" where there is none
   std::string_view meaning;
@@ -46,20 +65,21 @@ struct ModelParameter {
     return to_rgb(model.**std::get_if<0>(&member));
   }
   // The number itself; null of a colour, and of an azimuth, which keeps more than its number.
-  const float* number_in(const M& model) const {
+  const Number* number_in(const M& model) const {
     if (const auto* width = std::get_if<2>(&member)) return &((model.*(width->widths)).*(width->along));
     if (const auto* number = std::get_if<0>(&member)) return &(model.**number);
     return nullptr;
   }
+  Number* number_in(M& model) const { return const_cast<Number*>(number_in(std::as_const(model))); }
   void set(M& model, Rgb value) const {
     if (const auto* colour = std::get_if<1>(&member)) {
       model.** colour = value;
     } else if (const auto* width = std::get_if<2>(&member)) {
-      (model.*(width->widths)).*(width->along) = value.r;
+      (model.*(width->widths)).*(width->along) = Number(value.r);
     } else if (const auto* azimuth = std::get_if<3>(&member)) {
       model.** azimuth = Azimuth(value.r);
     } else {
-      model.**std::get_if<0>(&member) = value.r;
+      model.**std::get_if<0>(&member) = Number(value.r);
     }
   }
 };

@@ -7,10 +7,42 @@
 #include <type_traits>
 #include <vector>
 
+#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/brdf/family.hpp"
 #include "reflectree/brdf/material/description.hpp"
 
 namespace reflectree {
+
+// A model some of whose numbers are forms.
+template <class M>
+class ModelFamilyEnclosure final : public FamilyEnclosure {
+ public:
+  using Forms = typename WithNumber<M, AffineForm>::type;
+  struct Number {
+    std::size_t place, parameter;  // in describe() and in the family
+  };
+  ModelFamilyEnclosure(const M& model, std::vector<Number> numbers) : keeps_(symmetry_of_model(model)) {
+    const auto from = M::describe().parameters;
+    const auto to = Forms::describe().parameters;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i].set(forms_, from[i].get(model));
+    for (const Number& n : numbers) parts_.push_back({to[n.place], n.parameter});
+  }
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g, const ParameterForms& at) const override {
+    Forms member = forms_;
+    for (const auto& [part, parameter] : parts_) *part.number_in(member) = at[parameter];
+    return member(g);
+  }
+  ExactSymmetry keeps() const override { return keeps_; }
+
+ private:
+  struct Part {
+    ModelParameter<Forms> part;
+    std::size_t parameter;
+  };
+  Forms forms_;
+  std::vector<Part> parts_;
+  ExactSymmetry keeps_;
+};
 
 template <class M>
 class ModelFamily {
@@ -22,9 +54,7 @@ class ModelFamily {
   // `part`, a number of the model, follows a parameter of the family; both of a pair of widths may follow one.
   void vary(const ModelParameter<M>& part, std::size_t parameter) {
     if (const float* number = part.number_in(model_)) {
-      const auto place =
-          reinterpret_cast<const std::byte*>(number) - reinterpret_cast<const std::byte*>(&model_);
-      numbers_.push_back({std::size_t(place), parameter});
+      numbers_.push_back({place_of(number), parameter});
     } else {
       others_.push_back({part, parameter});
     }
@@ -56,6 +86,29 @@ class ModelFamily {
     }
   }
   BrdfTraits traits(const Parameters& parameters) const { return at(parameters).traits(); }
+  // None of a model without numbers, where an azimuth varies, or where two widths may meet: a round member has
+  // another formula.
+  std::shared_ptr<const FamilyEnclosure> enclosure(const std::vector<ParameterRange>& ranges) const {
+    if constexpr (requires { typename WithNumber<M, AffineForm>::type; }) {
+      Parameters lo{}, hi{};
+      for (std::size_t i = 0; i < ranges.size(); ++i) lo[i] = ranges[i].lo, hi[i] = ranges[i].hi;
+      const M least = at(lo), most = at(hi);
+      if (!others_.empty()) return nullptr;
+      if constexpr (requires { model_.alpha.round(); }) {
+        const bool apart = most.alpha.x < least.alpha.y || most.alpha.y < least.alpha.x;
+        if (follows(&model_.alpha.x) != follows(&model_.alpha.y) && !apart) return nullptr;
+      }
+      const auto description = M::describe().parameters;
+      std::vector<typename ModelFamilyEnclosure<M>::Number> numbers;
+      for (std::size_t i = 0; i < description.size(); ++i) {
+        const std::size_t parameter = follows(description[i].number_in(model_));
+        if (parameter < ranges.size()) numbers.push_back({i, parameter});
+      }
+      return std::make_shared<ModelFamilyEnclosure<M>>(least, std::move(numbers));
+    } else {
+      return nullptr;
+    }
+  }
   // Of a member.
   bool may_be_turned(const M& member) const {
     if constexpr (requires { member.alpha.round(); }) {
@@ -66,6 +119,17 @@ class ModelFamily {
   }
 
  private:
+  std::size_t place_of(const float* number) const {
+    return std::size_t(reinterpret_cast<const std::byte*>(number) - reinterpret_cast<const std::byte*>(&model_));
+  }
+  // The parameter that a number of the model follows; max_parameters where there is none.
+  std::size_t follows(const float* number) const {
+    for (const Number& n : numbers_) {
+      if (number && n.place == place_of(number)) return n.parameter;
+    }
+    return max_parameters;
+  }
+
   // A member is made for every sample: floats are written to their places.
   struct Number {
     std::size_t place, parameter;

@@ -9,11 +9,12 @@ namespace reflectree {
 // f = 28 kd / (23 pi) (1 - f0) (1 - (1 - co/2)^5) (1 - (1 - ci/2)^5)
 //   + sqrt((nx+1)(ny+1)) / (8 pi) hz^((nx hx^2 + ny hy^2) / (1 - hz^2)) F(cos_d) / (cos_d max(co, ci)).
 // Ashikhmin and Shirley 2000 (their nu, nv are n_x, n_y; Rd, Rs are kd, f0).
-struct AshikhminShirley {
+template <class N>
+struct AshikhminShirleyOf {
   Rgb kd{0.3f, 0.3f, 0.3f};
   Rgb f0{0.05f, 0.05f, 0.05f};
-  float n_x = 100;
-  float n_y = 100;
+  N n_x = N(100.f);
+  N n_y = N(100.f);
   Azimuth phi = {};
 
   template <class T>
@@ -36,17 +37,18 @@ struct AshikhminShirley {
   }
 
   BrdfTraits traits() const { return model_traits(*this, n_x == n_y); }
-  static ModelDescription<AshikhminShirley> describe() {
+  static ModelDescription<AshikhminShirleyOf> describe() {
     return {"ashikhmin_shirley",
             ModelClass::physical,
             "Phong-like lobe of the half vector with Fresnel term over a coupled diffuse part",
             "Ashikhmin and Shirley 2000, An anisotropic Phong BRDF model",
-            {{"kd", &AshikhminShirley::kd, 0, 1, "", "diffuse albedo (Rd)"},
-             {"f0", &AshikhminShirley::f0, 0, 1, "", "specular reflectance at normal incidence (Rs)"},
-             {"n_x", &AshikhminShirley::n_x, 1, 1e6f, "", "exponent along x (nu)"},
-             {"n_y", &AshikhminShirley::n_y, 1, 1e6f, "", "exponent along y (nv)"},
-             {"phi_deg", &AshikhminShirley::phi, -360, 360, "degrees", "azimuth of x"}}};
+            {{"kd", &AshikhminShirleyOf::kd, 0, 1, "", "diffuse albedo (Rd)"},
+             {"f0", &AshikhminShirleyOf::f0, 0, 1, "", "specular reflectance at normal incidence (Rs)"},
+             {"n_x", &AshikhminShirleyOf::n_x, 1, 1e6f, "", "exponent along x (nu)"},
+             {"n_y", &AshikhminShirleyOf::n_y, 1, 1e6f, "", "exponent along y (nv)"},
+             {"phi_deg", &AshikhminShirleyOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
+using AshikhminShirley = AshikhminShirleyOf<float>;
 
 }  // namespace reflectree

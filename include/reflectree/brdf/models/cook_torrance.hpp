@@ -16,8 +16,8 @@ T beckmann_distribution(Vec3<T> wh, T alpha, const Exponential& exponential) {
   return exponential(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
 }
 // The same with two widths.
-template <class T>
-T beckmann_distribution(Vec3<T> wh, Widths alpha) {
+template <class T, class N>
+T beckmann_distribution(Vec3<T> wh, WidthsOf<N> alpha) {
   const T hz2 = max(sqr(wh.z), T(1e-18));
   const T slope2 = (sqr(wh.x / T(alpha.x)) + sqr(wh.y / T(alpha.y))) / hz2;
   return exp(-slope2) / (pi_v<T> * T(alpha.x) * T(alpha.y) * sqr(hz2));
@@ -38,11 +38,12 @@ T v_cavity_visibility(const ShadingGeometry<T>& g) {
 
 // f = kd / pi + ks F D G / (4 co ci). Cook and Torrance 1982, with a normalised D and Walter et
 // al.'s 1/4 (2007, eq. 20) in place of the paper's 1/pi, which gives four times too much light.
-struct CookTorrance {
+template <class N>
+struct CookTorranceOf {
   Rgb kd{0.2f, 0.2f, 0.2f};
   Rgb ks{0.8f, 0.8f, 0.8f};
   Rgb f0{0.9f, 0.6f, 0.4f};
-  Widths alpha = 0.2f;
+  WidthsOf<N> alpha = N(0.2f);
   Azimuth phi = {};
 
   template <class T>
@@ -55,21 +56,22 @@ struct CookTorrance {
 
   BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
   const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
-  static ModelDescription<CookTorrance> describe() {
+  static ModelDescription<CookTorranceOf> describe() {
     return {
         "cook_torrance",
         ModelClass::physical,
         "diffuse part and microfacets: Beckmann, V-cavities, Schlick's Fresnel term",
         "Cook and Torrance 1982, A reflectance model for computer graphics, normalised as Walter et al. 2007",
-        {{"kd", &CookTorrance::kd, 0, 1, "", "diffuse albedo"},
-         {"ks", &CookTorrance::ks, 0, 1, "", "weight of the microfacets"},
-         {"f0", &CookTorrance::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
-         {"alpha_x", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::x}, 1e-3f, 1, "",
+        {{"kd", &CookTorranceOf::kd, 0, 1, "", "diffuse albedo"},
+         {"ks", &CookTorranceOf::ks, 0, 1, "", "weight of the microfacets"},
+         {"f0", &CookTorranceOf::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
+         {"alpha_x", typename ModelParameter<CookTorranceOf>::Width{&CookTorranceOf::alpha, &WidthsOf<N>::x}, 1e-3f, 1, "",
           "microfacet width along x (m in the paper)"},
-         {"alpha_y", ModelParameter<CookTorrance>::Width{&CookTorrance::alpha, &Widths::y}, 1e-3f, 1, "",
+         {"alpha_y", typename ModelParameter<CookTorranceOf>::Width{&CookTorranceOf::alpha, &WidthsOf<N>::y}, 1e-3f, 1, "",
           "microfacet width along y"},
-         {"phi_deg", &CookTorrance::phi, -360, 360, "degrees", "azimuth of x"}}};
+         {"phi_deg", &CookTorranceOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
+using CookTorrance = CookTorranceOf<float>;
 
 }  // namespace reflectree

@@ -22,8 +22,8 @@ T ggx_distribution(Vec3<T> wh, T alpha) {
 }
 
 // The same with two widths; Heitz 2014, eq. 85.
-template <class T>
-T ggx_distribution(Vec3<T> wh, Widths alpha) {
+template <class T, class N>
+T ggx_distribution(Vec3<T> wh, WidthsOf<N> alpha) {
   const T s = sqr(wh.x / T(alpha.x)) + sqr(wh.y / T(alpha.y)) + sqr(wh.z);
   return T(1) / (pi_v<T> * T(alpha.x) * T(alpha.y) * s * s);
 }
@@ -45,8 +45,8 @@ T ggx_visibility(T cos_theta_o, T cos_theta_i, T alpha) {
 }
 
 // The same with two widths: alpha^2 sin^2 theta becomes alpha_x^2 x^2 + alpha_y^2 y^2.
-template <class T>
-T ggx_visibility(Vec3<T> wo, Vec3<T> wi, Widths alpha) {
+template <class T, class N>
+T ggx_visibility(Vec3<T> wo, Vec3<T> wi, WidthsOf<N> alpha) {
   const auto widened = [&](const Vec3<T>& w) {
     return sqrt(sqr(w.z) + sqr(T(alpha.x) * w.x) + sqr(T(alpha.y) * w.y));
   };
@@ -58,21 +58,22 @@ struct GgxLobe {
   T distribution, visibility;
 };
 // Out of line: the round lobe, which most are, stays small enough to vanish in the loop that samples it.
-template <class T>
-REFLECTREE_NOINLINE GgxLobe<T> ggx_elliptic_lobe(const ShadingGeometry<T>& g, Widths alpha,
+template <class T, class N>
+REFLECTREE_NOINLINE GgxLobe<T> ggx_elliptic_lobe(const ShadingGeometry<T>& g, WidthsOf<N> alpha,
                                                  const Azimuth& phi) {
   return {ggx_distribution(in_frame_of(phi, g.wh), alpha),
           ggx_visibility(in_frame_of(phi, g.wo), in_frame_of(phi, g.wi), alpha)};
 }
-template <class T>
-REFLECTREE_INLINE GgxLobe<T> ggx_lobe(const ShadingGeometry<T>& g, Widths alpha, const Azimuth& phi) {
+template <class T, class N>
+REFLECTREE_INLINE GgxLobe<T> ggx_lobe(const ShadingGeometry<T>& g, WidthsOf<N> alpha, const Azimuth& phi) {
   if (!alpha.round()) return ggx_elliptic_lobe(g, alpha, phi);
   return {ggx_distribution(g.wh, T(alpha.x)), ggx_visibility(g.cos_theta_o, g.cos_theta_i, T(alpha.x))};
 }
 
 // GGX conductor: f = D F G2 / (4 cos_o cos_i), Fresnel by Schlick.
-struct Ggx {
-  Widths alpha = 0.1f;
+template <class N>
+struct GgxOf {
+  WidthsOf<N> alpha = N(0.1f);
   Rgb f0{1.f, 0.8f, 0.3f};
   Azimuth phi = {};
 
@@ -83,18 +84,19 @@ struct Ggx {
   }
 
   BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
-  static ModelDescription<Ggx> describe() {
+  static ModelDescription<GgxOf> describe() {
     return {"ggx",
             ModelClass::physical,
             "metal of microfacets: Trowbridge-Reitz, height-correlated Smith, Schlick's Fresnel term",
             "Walter et al. 2007, Microfacet models for refraction, eq. 33; Heitz 2014, eq. 99",
-            {{"alpha_x", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::x}, 1e-3f, 1, "",
+            {{"alpha_x", typename ModelParameter<GgxOf>::Width{&GgxOf::alpha, &WidthsOf<N>::x}, 1e-3f, 1, "",
               "microfacet width along x"},
-             {"alpha_y", ModelParameter<Ggx>::Width{&Ggx::alpha, &Widths::y}, 1e-3f, 1, "",
+             {"alpha_y", typename ModelParameter<GgxOf>::Width{&GgxOf::alpha, &WidthsOf<N>::y}, 1e-3f, 1, "",
               "microfacet width along y"},
-             {"f0", &Ggx::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
-             {"phi_deg", &Ggx::phi, -360, 360, "degrees", "azimuth of x"}}};
+             {"f0", &GgxOf::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
+             {"phi_deg", &GgxOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
+using Ggx = GgxOf<float>;
 
 }  // namespace reflectree

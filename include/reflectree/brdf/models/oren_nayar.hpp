@@ -9,9 +9,10 @@ namespace reflectree {
 // f = rho / pi (A + B max(0, cos(phi_o - phi_i)) sin(max(theta)) tan(min(theta))).
 // Oren and Nayar 1994. Not physical: near grazing the albedo is rho (A + B / 2), which reaches
 // 1.015 rho at sigma = 0.22.
-struct OrenNayar {
+template <class N>
+struct OrenNayarOf {
   Rgb rho{0.5f, 0.5f, 0.5f};
-  float sigma = 0.35f;
+  N sigma = N(0.35f);
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
@@ -25,14 +26,15 @@ struct OrenNayar {
   }
 
   BrdfTraits traits() const { return model_traits(*this); }
-  static ModelDescription<OrenNayar> describe() {
+  static ModelDescription<OrenNayarOf> describe() {
     return {"oren_nayar",
             ModelClass::approximate,
             "rough diffuse surface, qualitative model",
             "Oren and Nayar 1994, Generalization of Lambert's reflectance model",
-            {{"rho", &OrenNayar::rho, 0, 1, "", "albedo of a facet"},
-             {"sigma", &OrenNayar::sigma, 0, 1.5707964f, "rad", "standard deviation of the facets' angles"}}};
+            {{"rho", &OrenNayarOf::rho, 0, 1, "", "albedo of a facet"},
+             {"sigma", &OrenNayarOf::sigma, 0, 1.5707964f, "rad", "standard deviation of the facets' angles"}}};
   }
 };
+using OrenNayar = OrenNayarOf<float>;
 
 }  // namespace reflectree

@@ -8,10 +8,11 @@ namespace reflectree {
 
 // Modified Phong: f = kd / pi + ks (n + 2) / (2 pi) max(0, cos alpha)^n, alpha the angle between wi and
 // the mirror direction of wo. Lafortune and Willems 1994.
-struct Phong {
+template <class N>
+struct PhongOf {
   Rgb kd{0.2f, 0.2f, 0.2f};
   Rgb ks{0.6f, 0.6f, 0.6f};
-  float n = 50;
+  N n = N(50.f);
 
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
@@ -21,15 +22,16 @@ struct Phong {
 
   BrdfTraits traits() const { return model_traits(*this); }
   const char* fault() const { return sum_above_one(kd, ks) ? "kd + ks must not exceed 1" : nullptr; }
-  static ModelDescription<Phong> describe() {
+  static ModelDescription<PhongOf> describe() {
     return {"phong",
             ModelClass::physical,
             "diffuse part and cosine-power lobe about the mirror direction",
             "Lafortune and Willems 1994, Using the modified Phong reflectance model",
-            {{"kd", &Phong::kd, 0, 1, "", "diffuse albedo"},
-             {"ks", &Phong::ks, 0, 1, "", "albedo of the lobe at normal incidence"},
-             {"n", &Phong::n, 1, 1e6f, "", "exponent"}}};
+            {{"kd", &PhongOf::kd, 0, 1, "", "diffuse albedo"},
+             {"ks", &PhongOf::ks, 0, 1, "", "albedo of the lobe at normal incidence"},
+             {"n", &PhongOf::n, 1, 1e6f, "", "exponent"}}};
   }
 };
+using Phong = PhongOf<float>;
 
 }  // namespace reflectree

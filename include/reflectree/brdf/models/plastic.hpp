@@ -9,10 +9,11 @@ namespace reflectree {
 // lets in and out again, kd / pi (1 - F(co)) (1 - F(ci)), reciprocal as in Shirley et al. 1997. Dividing by
 // the mean of 1 - F would give a white base back all that the coat passes, but then the albedo exceeds 1
 // (by 0.0024 at alpha = 0.2, f0 = 0, 50 degrees): a rough coat reflects more than F(co).
-struct Plastic {
+template <class N>
+struct PlasticOf {
   Rgb kd{0.1f, 0.3f, 0.6f};
-  float f0 = 0.04f;
-  Widths alpha = 0.1f;
+  N f0 = N(0.04f);
+  WidthsOf<N> alpha = N(0.1f);
   Azimuth phi = {};
 
   template <class T>
@@ -27,19 +28,20 @@ struct Plastic {
   }
 
   BrdfTraits traits() const { return model_traits(*this, alpha.round()); }
-  static ModelDescription<Plastic> describe() {
+  static ModelDescription<PlasticOf> describe() {
     return {"plastic",
             ModelClass::physical,
             "smooth diffuse base under a rough dielectric coat (GGX)",
             "Shirley et al. 1997, A practitioners' assessment of light reflection models; Walter et al. 2007",
-            {{"kd", &Plastic::kd, 0, 1, "", "albedo of the base"},
-             {"f0", &Plastic::f0, 0, 1, "", "Fresnel reflectance of the coat at normal incidence"},
-             {"alpha_x", ModelParameter<Plastic>::Width{&Plastic::alpha, &Widths::x}, 1e-3f, 1, "",
+            {{"kd", &PlasticOf::kd, 0, 1, "", "albedo of the base"},
+             {"f0", &PlasticOf::f0, 0, 1, "", "Fresnel reflectance of the coat at normal incidence"},
+             {"alpha_x", typename ModelParameter<PlasticOf>::Width{&PlasticOf::alpha, &WidthsOf<N>::x}, 1e-3f, 1, "",
               "microfacet width of the coat along x"},
-             {"alpha_y", ModelParameter<Plastic>::Width{&Plastic::alpha, &Widths::y}, 1e-3f, 1, "",
+             {"alpha_y", typename ModelParameter<PlasticOf>::Width{&PlasticOf::alpha, &WidthsOf<N>::y}, 1e-3f, 1, "",
               "microfacet width of the coat along y"},
-             {"phi_deg", &Plastic::phi, -360, 360, "degrees", "azimuth of x"}}};
+             {"phi_deg", &PlasticOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };
+using Plastic = PlasticOf<float>;
 
 }  // namespace reflectree

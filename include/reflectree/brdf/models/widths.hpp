@@ -6,13 +6,16 @@
 
 namespace reflectree {
 
-// Microfacet widths along x and y; one number stands for both.
-struct Widths {
-  float x = 0, y = 0;
-  constexpr Widths(float both) : x(both), y(both) {}
-  constexpr Widths(float along_x, float along_y) : x(along_x), y(along_y) {}
+// Microfacet widths along x and y; one number stands for both. Numbers are floats, or, where the widths of a family
+// vary over boxes (enclosure.hpp), forms: these are round where they are the same form.
+template <class Number>
+struct WidthsOf {
+  Number x{}, y{};
+  constexpr WidthsOf(Number both) : x(both), y(both) {}
+  constexpr WidthsOf(Number along_x, Number along_y) : x(along_x), y(along_y) {}
   constexpr bool round() const { return x == y; }
 };
+using Widths = WidthsOf<float>;
 
 // The azimuth, in degrees, of the x axis of a model's own frame in the surface's.
 struct Azimuth {

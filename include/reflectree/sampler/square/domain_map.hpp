@@ -20,9 +20,9 @@ REFLECTREE_INLINE float lower_azimuth(Direction w) {
   return w.x < 0 ? -x : x;
 }
 
-// lift() for floats or lanes.
-template <class T>
-REFLECTREE_INLINE DomainPointT<T> lift_point(const Domain& domain, Vec3<T> wo, Vec2<T> p) {
+// lift() for floats, lanes, or boxes, whose domain may have widths of its own (enclosed_map.hpp).
+template <class T, class D>
+REFLECTREE_INLINE DomainPointT<T> lift_point(const D& domain, Vec3<T> wo, Vec2<T> p) {
   const Vec2<T> half_azimuth = cos_sin_half(p.x);
   const T y = abs(p.y);
   // cos phi = sin(pi x / 2), sin phi = cos(pi x / 2), on the side of y.

@@ -66,6 +66,52 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const AffineForm& z,
   return out;
 }
 
+// The star of slopes likewise: c / p is q z / l where b > 0, and l / z where b < 0. Both are
+//   sqrt(q) exp(-asinh(b / (sqrt(q) z))),
+// which has no kink where b changes its sign, and a logarithm that hardly bends.
+inline detail::SlopeStar<AffineForm> slope_star(const Vec3<AffineForm>& wo, const Vec2<AffineForm>& along) {
+  const AffineForm q = sqr(along.x) + sqr(along.y), b = along.x * wo.x + along.y * wo.y, width = sqrt(q);
+  const AffineForm qz = q * wo.z, l = sqrt(sqr(b) + qz * wo.z) + abs(b);
+  const AffineForm c = by_sign(b, qz / l, l / wo.z), smooth = width * exp(-asinh(b / (width * wo.z)));
+  return {AffineForm(1), widened(narrower(c, smooth), 8 * 0x1p-24)};
+}
+// 1 / d = (1 - y) + c y = c (1 + (1 - y) (1 / c - 1)), the latter near the rim. What the map adds and takes away
+// rounds by less than 4 u max(1, c).
+inline AffineForm radius_per_y(const detail::SlopeStar<AffineForm>& star, const AffineForm& y) {
+  const AffineForm one(1), rest = one - y;
+  const double off = 4 * 0x1p-24 * std::max(1., star.c.range.hi);
+  const AffineForm slack = AffineForm::anything_in({-off, off});
+  const AffineForm plain = one / (one + (star.c - one) * y);
+  const AffineForm inside = one / (rest + star.c * y + slack);
+  const AffineForm by_rim = one / (star.c * (one + rest * (one / star.c - one)) + slack);
+  return narrower(narrower(plain, inside), by_rim);
+}
+// Both squares are r^2 q; what they round is relative.
+inline AffineForm squared_normal(const Vec2<AffineForm>&, const Vec2<AffineForm>& along, const AffineForm& r) {
+  return widened(AffineForm(1) + (sqr(along.x) + sqr(along.y)) * sqr(r), 8 * 0x1p-24);
+}
+// With q and b of slope_star_map.hpp and the roots R and -1 / (q R) of z + 2 b r - q z r^2,
+//   (2 (wo.n) - z (n.n)) / (n.n) = z (1 - r / R) (1 + q R r) / (1 + q r^2).
+// 1 - r / R = d (1 - y) errs as above. But b is a sum whose terms may cancel, and so is wo.n: the map's R belongs to
+// a b that is off by 4 u of its terms, and wo.n errs by 4 u of its own, which are r times as large.
+inline AffineForm reflected_cosine(const AffineForm& twice, const Vec3<AffineForm>& wo,
+                                   const detail::SlopeStar<AffineForm>& star, const Vec2<AffineForm>& along,
+                                   const AffineForm& y, const AffineForm& d,
+                                   const AffineForm& cos2_theta_h) {
+  constexpr double u = 0x1p-24;
+  const AffineForm plain = twice - wo.z, r = y * d;
+  const double off = 24 * u * std::max(1., d.range.hi);
+  const double terms = r.range.hi * ((along.x * wo.x).range.magnitude() + (along.y * wo.y).range.magnitude());
+  const double lost = 16 * u * (twice.range.hi + wo.z.range.hi + cos2_theta_h.range.hi * terms);
+  if (!(off < 1) || !(lost < 1)) return plain;
+  const AffineForm to_rim = d * (AffineForm(1) - y) + AffineForm::anything_in({-off, off});
+  const AffineForm beyond = AffineForm(1) + (sqr(along.x) + sqr(along.y)) * (r * (star.p / star.c));
+  AffineForm out =
+      narrower(plain, wo.z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost}));
+  out.range.hi = std::min(out.range.hi, 1 + 4 * length_tolerance);
+  return out;
+}
+
 // A direction that a domain returns is of unit length, and so is a half vector: what large boxes know of them.
 inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point) {
   constexpr double most = 1 + 4 * length_tolerance;
@@ -82,8 +128,15 @@ inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point
 // the two may point apart, what it has along their difference m is taken out: of u along x only
 // u |(m.y, m.z)| / |m| < u |p| stays. With the roundings of this step and of the norm: less than 64 u of itself
 // and 8 u along x and y.
-inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<AffineForm>& wo,
-                                         const Vec2<AffineForm>& p) {
+//
+// `D`: a Domain, or one of a family, whose widths are forms.
+struct DomainForms {
+  DomainKind kind;
+  float exponent, stretch;
+  AffineForm scale_x, scale_y;
+};
+template <class D>
+DomainPointT<AffineForm> lift_box(const D& domain, const Vec3<AffineForm>& wo, const Vec2<AffineForm>& p) {
   if (domain.kind != DomainKind::back_vector) {
     DomainPointT<AffineForm> out = with_unit_vectors(detail::lift_point(domain, wo, p));
     if (domain.kind == DomainKind::half_vector) {
@@ -97,7 +150,7 @@ inline DomainPointT<AffineForm> lift_box(const Domain& domain, const Vec3<Affine
     if (domain.kind == DomainKind::equal_area) out.area_by_cosine = AffineForm(2 * pi);
     return out;
   }
-  Domain of_halves = domain;
+  D of_halves = domain;
   of_halves.kind = DomainKind::half_vector;
   const DomainPointT<AffineForm> turned =
       with_unit_vectors(detail::lift_point(of_halves, mirror_direction(wo), p));

@@ -44,17 +44,33 @@ REFLECTREE_INLINE SlopeStar<T> slope_star(Vec3<T> wo, Vec2<T> along) {
   const T l = sqrt(b * b + q * sqr(wo.z)) + abs(b);  // for b < 0, R = wo.z / l: nothing cancels
   return {by_sign(b, l, wo.z), by_sign(b, q * wo.z, l)};
 }
+// d of a place of the star, and n.n.
+template <class T>
+REFLECTREE_INLINE T radius_per_y(const SlopeStar<T>& star, T y) {
+  return star.p / (star.p + (star.c - star.p) * y);
+}
+template <class T>
+REFLECTREE_INLINE T squared_normal(const Vec2<T>& tau, const Vec2<T>&, T) {
+  return T(1) + tau.x * tau.x + tau.y * tau.y;
+}
+// cos theta_i = 2 (wo.n) / (n.n) - cos theta_o of a place of the star. Where nothing is known but a box of
+// places (enclosed_map.hpp) the other arguments serve.
+template <class T>
+REFLECTREE_INLINE T reflected_cosine(T twice, const Vec3<T>& wo, const SlopeStar<T>&, const Vec2<T>&, T, T, T) {
+  return twice - wo.z;
+}
 template <class T, class Map>
 REFLECTREE_INLINE DomainPointT<T> lift_slopes(Vec3<T> wo, const Map& map, Vec2<T> azimuth, T y) {
   y = max(y, T(1e-12f));
   const Vec2<T> along = map.along(azimuth);
   const SlopeStar<T> star = slope_star(wo, along);
-  const T d = star.p / (star.p + (star.c - star.p) * y), r = y * d;
+  const T d = radius_per_y(star, y), r = y * d;
   const Vec2<T> tau{r * along.x, r * along.y};
-  const T nn = T(1) + tau.x * tau.x + tau.y * tau.y;
+  const T nn = squared_normal(tau, along, r);
   const T wo_n = max(wo.x * tau.x + wo.y * tau.y + wo.z, T(min_cos_theta_i));
   const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
-  const Vec3<T> wi{twice * tau.x - wo.x, twice * tau.y - wo.y, max(twice - wo.z, T(min_cos_theta_i))};
+  const Vec3<T> wi{twice * tau.x - wo.x, twice * tau.y - wo.y,
+                   max(reflected_cosine(twice, wo, star, along, y, d, cos2_theta_h), T(min_cos_theta_i))};
   const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (map.area(r) * d * d);
   const T cos_theta_h = sqrt(cos2_theta_h);
   const Vec3<T> wh{tau.x * cos_theta_h, tau.y * cos_theta_h, cos_theta_h};

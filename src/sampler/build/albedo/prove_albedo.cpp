@@ -20,7 +20,7 @@ using namespace detail;
 // Elevations of one slab, where the table is allowed the same error: a slab, or one of its parts below and beyond
 // 89.9 degrees.
 struct Part {
-  CosineRange cosines;
+  KnownRange known;
   Elevations theta;
   std::span<const PackedLeaf> leaves;
 };
@@ -32,15 +32,18 @@ std::vector<Part> parts_of(const EnclosedField& field, const PackedSampler& pack
   std::vector<Part> parts;
   for (std::size_t i = 0; i < packed.exact.slabs.size(); ++i) {
     const PackedSlab& slab = packed.exact.slabs[i];
-    const CosineRange cosines{borders[i], min(borders[i + 1], 1.f)};
-    const Elevations theta = field.elevations(cosines);
+    const KnownRange known{borders[i], min(borders[i + 1], 1.f)};
+    const Elevations theta = field.elevations(known);
     const auto leaves = std::span(packed.exact.leaves).subspan(slab.first, slab.count);
     const double cut = std::clamp(border, theta.lo, theta.hi);
-    if (cut > theta.lo) parts.push_back({cosines, {theta.lo, cut}, leaves});
-    if (cut < theta.hi) parts.push_back({cosines, {cut, theta.hi}, leaves});
+    if (cut > theta.lo) parts.push_back({known, {theta.lo, cut}, leaves});
+    if (cut < theta.hi) parts.push_back({known, {cut, theta.hi}, leaves});
   }
   return parts;
 }
+
+// theta_o and the two coordinates across the leaf.
+constexpr std::size_t axes = 3;
 
 // T over one leaf: boxes are halved until each adds at most `most` to the error.
 class LeafIntegral {
@@ -74,16 +77,16 @@ class LeafIntegral {
     ElevationLine line;
     std::size_t node = 0;  // of its elevations
     // What halving along each axis would take off the error, as last tried; falls with the square of the side.
-    std::array<double, ProofBox::axes> gain{};
+    std::array<double, axes> gain{};
     int age = 0, depth = 0;
   };
 
   ElevationLine enclose(const ProofBox& box) {
     ++boxes_;
-    const EnclosedPoint p = field_.over(box, part_.cosines, leaf_);
+    const EnclosedPoint p = field_.over(box, part_.known, leaf_);
     ElevationLine line = mean_over_square(p.target);
     double share = double(area_of(leaf_));
-    for (std::size_t i = 1; i < ProofBox::axes; ++i) share *= box.hi[i] - box.lo[i];
+    for (std::size_t i = 1; i < axes; ++i) share *= box.hi[i] - box.lo[i];
     if (p.mirrored) {
       const ElevationLine other = mean_over_square(*p.mirrored);
       line.lo += other.lo, line.hi += other.hi, line.error += other.error;
@@ -108,15 +111,15 @@ class LeafIntegral {
     std::size_t axis = 0;
     std::array<Box, 2> chosen;
     if (!(b.line.error < infinity)) {
-      axis = std::size_t(b.depth) % ProofBox::axes;
+      axis = std::size_t(b.depth) % axes;
       chosen = halves(b, axis);
     } else if (b.age > 0 && b.age <= trusted) {
       axis = std::size_t(std::max_element(b.gain.begin(), b.gain.end()) - b.gain.begin());
       chosen = halves(b, axis);
       for (Box& half : chosen) half.gain[axis] *= 0.25, ++half.age;
     } else {
-      std::array<double, ProofBox::axes> gain{};
-      for (std::size_t i = 0; i < ProofBox::axes; ++i) {
+      std::array<double, axes> gain{};
+      for (std::size_t i = 0; i < axes; ++i) {
         const std::array<Box, 2> tried = halves(b, i);
         gain[i] = b.line.error - left(tried, i);
         if (i == 0 || gain[i] > gain[axis]) axis = i, chosen = tried;
@@ -142,7 +145,7 @@ struct Miss {
   double miss = 0, open = 0;
 };
 Miss miss_of(const EnclosedField& field, const Part& part, double lo, double hi, const ElevationLine& line) {
-  const AffineForm table = field.albedo(lo, hi, part.cosines);
+  const AffineForm table = field.albedo(lo, hi, part.known);
   if (table.range.hi <= 0) return {};  // viewers whose albedo is 0 get no sample
   const double least = std::min(line.lo, line.hi) - line.error;
   if (!(least > 0) || !(line.error < infinity)) return {infinity, infinity};
@@ -185,7 +188,7 @@ AlbedoProof prove_part(const EnclosedField& field, const Part& part, const Albed
                        const Host& host) {
   constexpr int passes = 4;
   const double asked = options.relative_error, allowed = times_allowed(float(std::cos(part.theta.lo)));
-  const RealInterval table = field.albedo(part.theta.lo, part.theta.hi, part.cosines).range;
+  const RealInterval table = field.albedo(part.theta.lo, part.theta.hi, part.known).range;
   double most = 0.03 * sqr(asked * allowed) * std::max(table.lo, 0.1 * table.hi);
   AlbedoProof best{infinity, 0};
   for (int pass = 0; pass < passes && best.boxes < options.boxes_per_slab; ++pass) {
@@ -214,6 +217,9 @@ AlbedoProof prove_albedo(SamplerData& data, const AnyBrdf& f, const AlbedoProofO
   host.stage("proving the albedo");
   const PackedSampler packed = pack(data);
   const EnclosedField field(f, packed);
+  if (field.axes() != axes)
+    throw Error("no integral of forms where the formula sees an azimuth", data.material,
+                "its albedo keeps the error that was measured");
   const std::vector<Part> parts = parts_of(field, packed);
   AlbedoProof proof;
   for (std::size_t k = 0; k < parts.size(); ++k) {
