@@ -126,6 +126,7 @@ def main():
     parser.add_argument("--data", default=os.environ.get("REFLECTREE_DATA"), type=pathlib.Path)
     parser.add_argument("--only", default="", help="materials whose name has this in it")
     parser.add_argument("--spp", default=1024, type=int)
+    parser.add_argument("--longer", default=1, type=int, help="how many times as many paths of Mitsuba's: for narrow patches")
     parser.add_argument("--sheet", type=pathlib.Path, help="a PNG of all pictures")
     o = parser.parse_args()
     program, good, sheet = o.reflectree.resolve(), True, []
@@ -143,10 +144,10 @@ def main():
                 path.write_text(SCENE.format(spp=o.spp, pixels=PIXELS, bsdf=bsdf, turn=turn))
                 return path
 
-            mine, own = ours(program, scene(0), folder), theirs(scene(0), o.spp)
+            mine, own = ours(program, scene(0), folder), theirs(scene(0), o.longer * o.spp)
             # The table itself is turned where we hold it, else the shapes.
             table_bsdf.TURN = TURN if "reflectree" in bsdf else 0
-            turned = theirs(scene(0 if table_bsdf.TURN else TURN), o.spp)
+            turned = theirs(scene(0 if table_bsdf.TURN else TURN), o.longer * o.spp)
             table_bsdf.TURN = 0
             brighter = (None, own[1] * BRIGHTER, own[2] * BRIGHTER**2)
             z, twins = scores(mine, own), [scores(mine, turned), scores(mine, brighter)]
