@@ -107,8 +107,7 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, CosineRange cosines, cons
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
   const DomainPointT<AffineForm> lifted = lift_box(packed_.domain, wo, at.p);
-  EnclosedPoint out{target_over(lifted, lifted.geometry), std::nullopt,
-                    albedo_over(c) * at.height};
+  EnclosedPoint out{target_over(lifted, lifted.geometry), std::nullopt, albedo_over(c) * at.height};
   if (packed_.domain.half() && !mirror_symmetric_) {
     out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry));
   }
