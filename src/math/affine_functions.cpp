@@ -83,8 +83,7 @@ AffineForm expm1(const AffineForm& the_x) {
                               detail::well_above(std::expm1(b))};
   if (!std::isfinite(a) || !(b < 85)) return only_range(range, library);
   const auto f = [](double v) { return Curve{-std::expm1(v), -std::exp(v)}; };
-  const double alpha =
-      b - a > 1e-6 ? (std::expm1(b) - std::expm1(a)) / (b - a) : std::exp(0.5 * (a + b));
+  const double alpha = b - a > 1e-6 ? (std::expm1(b) - std::expm1(a)) / (b - a) : std::exp(0.5 * (a + b));
   return -concave(x, f, std::clamp(std::log(std::max(alpha, 1e-300)), a, b), -alpha, -range, library);
 }
 

@@ -30,7 +30,8 @@ struct Rgl {
     const auto fill = [&](std::vector<float>& v, std::size_t n, double lo) {
       for (std::size_t i = 0; i < n; ++i) v.push_back(float(lo + (1 - lo) * uniform(bits)));
     };
-    fill(f.sigma, 12, 0.3), fill(f.ndf, 17, 0.1), fill(f.vndf, 4 * 9 * 13, 0.05), fill(f.rgb, 4 * 3 * 6 * 7, -0.1);
+    fill(f.sigma, 12, 0.3), fill(f.ndf, 17, 0.1), fill(f.vndf, 4 * 9 * 13, 0.05),
+        fill(f.rgb, 4 * 3 * 6 * 7, -0.1);
     for (std::size_t i = 0; i < f.rgb.size(); i += 5) f.rgb[i] += bright;
     return RglTable(f);
   }
@@ -150,8 +151,9 @@ std::size_t missed_patches(double turn) {
     for (int k = 0; k < 8; ++k) {
       const double x = lo[0] + width * uniform(bits), y = lo[1] + width * uniform(bits);
       const double c = std::cos(turn), s = std::sin(turn);
-      const int patch = basis.patch_of({float(c * x - s * y), float(s * x + c * y),
-                                        std::min(float(lo[2] + width * uniform(bits)), float(lo[2] + width))});
+      const int patch =
+          basis.patch_of({float(c * x - s * y), float(s * x + c * y),
+                          std::min(float(lo[2] + width * uniform(bits)), float(lo[2] + width))});
       const auto& all = touched.patches;
       missed += patch < 0 ? !touched.beyond : std::find(all.begin(), all.end(), patch) == all.end();
     }

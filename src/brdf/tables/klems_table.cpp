@@ -38,7 +38,8 @@ KlemsBasis::Touched KlemsBasis::patches_of(const Vec3<AffineForm>& w) const {
   const RealInterval turns{angle.lo / turn + start - off, angle.hi / turn + start + off};
   Touched out;
   for (std::size_t ring = 0; ring < patches_.size(); ++ring) {
-    const bool above = z.hi > double(cos_theta_[ring + 1]), below = ring == 0 || z.lo <= double(cos_theta_[ring]);
+    const bool above = z.hi > double(cos_theta_[ring + 1]),
+               below = ring == 0 || z.lo <= double(cos_theta_[ring]);
     if (!above || !below) continue;
     const int n = patches_[ring];
     const int first = int(std::floor(turns.lo * n + 0.5)), last = int(std::floor(turns.hi * n + 0.5));
@@ -85,10 +86,8 @@ class KlemsEnclosure final : public BrdfEnclosure {
   // Constant over patches: nothing is lost by the range of those that are touched.
   RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
     const bool through = table_.seen_through;
-    const KlemsBasis::Touched in =
-        table_.incident.patches_of({through ? g.wo.x : -g.wo.x, -g.wo.y, g.wo.z});
-    const KlemsBasis::Touched out =
-        table_.exiting.patches_of({through ? -g.wi.x : g.wi.x, g.wi.y, g.wi.z});
+    const KlemsBasis::Touched in = table_.incident.patches_of({through ? g.wo.x : -g.wo.x, -g.wo.y, g.wo.z});
+    const KlemsBasis::Touched out = table_.exiting.patches_of({through ? -g.wi.x : g.wi.x, g.wi.y, g.wi.z});
     RealInterval range{detail::infinity, -detail::infinity};
     if (in.beyond || out.beyond) range = {0, 0};
     for (const int i : in.patches) {

@@ -3,12 +3,14 @@
 
 #include <array>
 
+#include "bent_pieces.hpp"
 #include "enclosed_angles.hpp"
 #include "reflectree/brdf/tables/enclosed_difference.hpp"
 #include "reflectree/math/affine_grid.hpp"
 
 namespace reflectree {
 
+using namespace bent_pieces;
 using namespace enclosed_angles;
 
 namespace {
@@ -50,105 +52,20 @@ AffineForm interpolated(const std::vector<float>& table, const AffineForm& x) {
   return widened(AffineForm::anything_in(range), 8 * u);
 }
 
-// The parts into which nodes cut a range.
-struct Part {
-  double lo, hi;
-  int cell;
-  double from, to;  // the cell's nodes
-  double share(double x) const { return std::clamp((x - from) / (to - from), 0., 1.); }
-};
-class Parts {
- public:
-  static constexpr std::size_t most = 12;
-  // node(i): where node i lies.
-  template <class Node>
-  Parts(RealInterval x, int nodes, const Node& node) {
-    for (int i = 0; i + 1 < nodes; ++i) {
-      const double from = node(i), to = node(i + 1);
-      if ((to <= x.lo && i + 2 < nodes) || (from >= x.hi && i > 0 && count_ > 0)) continue;
-      if (count_ == most) {
-        few_ = false;
-        return;
-      }
-      const bool last = i + 2 >= nodes;
-      parts_[count_++] = {std::max(from, x.lo), last ? std::max(x.hi, from) : std::min(to, x.hi), i, from, to};
-    }
-  }
-  bool are_few() const { return few_; }
-  const Part* begin() const { return parts_.data(); }
-  const Part* end() const { return parts_.data() + count_; }
-  std::size_t size() const { return count_; }
-
- private:
-  std::array<Part, most> parts_{};
-  std::size_t count_ = 0;
-  bool few_ = true;
-};
-
-// A function of theta_o, x and y that is linear in theta_o, and at most quadratic along one of the others, in each
-// part: `bend` is its second difference there, for a whole cell. Less its chord it reaches an eighth of that, times
-// the square of the part's width.
-struct Bent {
-  double value, bend, width;
-};
-// f(theta_o part, place, x part, place, y part, place), not negative; the program errs by `share` of the largest.
-template <class F>
-AffineForm enclosed(const std::array<const Parts*, 3>& parts, const std::array<AffineForm, 3>& at, const F& f,
-                    double share) {
-  std::array<double, 3> alpha{};
-  for (std::size_t bits = 0; bits < 8; ++bits) {
-    std::array<const Part*, 3> part;
-    std::array<double, 3> place;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const bool high = (bits >> a & 1U) != 0;
-      part[a] = high ? parts[a]->end() - 1 : parts[a]->begin();
-      place[a] = high ? part[a]->hi : part[a]->lo;
-    }
-    const double v = f(part, place).value;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double width = at[a].range.hi - at[a].range.lo;
-      if (width > 0 && at[a].error < detail::infinity)
-        alpha[a] += ((bits >> a & 1U) != 0 ? v : -v) / (4 * width);
-    }
-  }
-  for (double& a : alpha) {
-    if (!std::isfinite(a)) a = 0;
-  }
-  RealInterval offset{detail::infinity, -detail::infinity}, range = offset;
-  for (const Part& t : *parts[0]) {
-    for (const Part& x : *parts[1]) {
-      for (const Part& y : *parts[2]) {
-        for (std::size_t bits = 0; bits < 8; ++bits) {
-          const std::array<double, 3> place{(bits & 1U) != 0 ? t.hi : t.lo, (bits & 2U) != 0 ? x.hi : x.lo,
-                                            (bits & 4U) != 0 ? y.hi : y.lo};
-          const Bent v = f({&t, &x, &y}, place);
-          const double off = 0.125 * v.bend * v.width * v.width;
-          const double rest = v.value - (alpha[0] * place[0] + alpha[1] * place[1] + alpha[2] * place[2]);
-          offset = hull(offset, {rest - std::max(off, 0.), rest + std::max(-off, 0.)});
-          range = hull(range, {v.value - std::max(off, 0.), v.value + std::max(-off, 0.)});
-        }
-      }
-    }
-  }
-  double size = range.magnitude();
-  for (std::size_t a = 0; a < 3; ++a) size += std::abs(alpha[a]) * at[a].range.magnitude();
-  const double of_values = range.magnitude() * (share + 0x1p-46), slack = of_values + size * 0x1p-46;
-  return linear_enclosure(at, alpha, {offset.lo - slack, offset.hi + slack},
-                          {std::max(range.lo - of_values, 0.), range.hi + of_values});
-}
-
 }  // namespace
 
 // Many cells, as where the azimuth of wh may be any. Between nodes of theta_o and y the place along x is a quotient
 // of two means with the same weights, and so between the quotients at the nodes; all masses ascend.
-Vec2<AffineForm> RglEnclosure::unwarped_range(const AffineForm& theta_o, RealInterval x, RealInterval y) const {
+Vec2<AffineForm> RglEnclosure::unwarped_range(const AffineForm& theta_o, RealInterval x,
+                                              RealInterval y) const {
   const RglTable& table = table_;
   const int width = table.warp_width_, height = table.warp_height_, pairs = int(table.theta_o_.size()) - 1;
   const auto cell = [](double at, int cells) { return std::clamp(int(at), 0, cells - 1); };
   const int first_y = cell(y.lo, height - 1), last_y = cell(y.hi, height - 1);
   RealInterval sx{1, 0}, sy{1, 0};
   for (int pair = 0; pair < pairs; ++pair) {
-    const double from = double(table.theta_o_[std::size_t(pair)]), to = double(table.theta_o_[std::size_t(pair) + 1]);
+    const double from = double(table.theta_o_[std::size_t(pair)]),
+                 to = double(table.theta_o_[std::size_t(pair) + 1]);
     if ((to < theta_o.range.lo && pair + 1 < pairs) || (from > theta_o.range.hi && pair > 0)) continue;
     for (const std::size_t side : {0U, 1U}) {
       const std::size_t slice = std::size_t(pair) * std::size_t(height);
@@ -189,11 +106,12 @@ Vec2<AffineForm> RglEnclosure::unwarped(const AffineForm& theta_o, const AffineF
   const Parts of_theta(theta_o.range, int(table.theta_o_.size()),
                        [&](int i) { return double(table.theta_o_[std::size_t(i)]); });
   const Parts of_x(x.range, width, unit), of_y(y.range, height, unit);
-  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few()) return unwarped_range(theta_o, x.range, y.range);
+  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few())
+    return unwarped_range(theta_o, x.range, y.range);
   using Where = std::array<const Part*, 3>;
   using Places = std::array<double, 3>;
   constexpr double share = 32 * u;
-  const auto mix = [](const float (&ends)[2], double t) {
+  const auto mix = [](const float(&ends)[2], double t) {
     return (1 - t) * double(ends[0]) + t * double(ends[1]);
   };
   // Along a row up to x, on both rows of the cell.
@@ -285,8 +203,8 @@ RgbT<AffineForm> RglEnclosure::value(const ShadingGeometry<AffineForm>& g, const
   const AffineForm theta_h = polar_angle(detail::half_frame(g).sin_theta_h, g.cos_theta_h);
   const AffineForm of_theta = elevation_to_u(theta_h);
   const AffineForm of_phi = relative_azimuth(g) * AffineForm(0.5f / pi) + AffineForm(0.5f);
-  const Vec2<AffineForm> at = unwarped(theta_o, located(of_theta, table_.warp_width_),
-                                       located(of_phi, table_.warp_height_));
+  const Vec2<AffineForm> at =
+      unwarped(theta_o, located(of_theta, table_.warp_width_), located(of_phi, table_.warp_height_));
   const AffineForm zero(0.f);
   const AffineForm normals = max(interpolated(table_.ndf_, located(of_theta, int(table_.ndf_.size()))), zero);
   const AffineForm scale = factor * (normals / (AffineForm(4.f) * sigma));

@@ -123,8 +123,8 @@ RglTable::InWarp RglTable::in_warp(const Known& of_wo, const ShadingGeometry<flo
   const float u = elevation_to_u(polar_angle(sin2_theta(g.wh), g.cos_theta_h));
   const GridPosition px = locate(u, warp_width_), py = locate(phi * (0.5f / pi) + 0.5f, warp_height_);
   const std::size_t row = of_wo.pair * std::size_t(warp_height_) + std::size_t(py.node);
-  return {warp_ + row * std::size_t(warp_width_) + std::size_t(px.node), rows_ + row,
-          px.fraction, py.fraction, u};
+  return {warp_ + row * std::size_t(warp_width_) + std::size_t(px.node), rows_ + row, px.fraction,
+          py.fraction, u};
 }
 
 // V^-1: the cumulative masses of the bilinear density up to the half vector, along u, then along v.

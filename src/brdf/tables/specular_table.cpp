@@ -80,7 +80,9 @@ class SpecularEnclosure final : public BrdfEnclosure {
     const AffineForm x = g.cos_theta_o * along + sin_o * g.wi.z, z = g.cos_theta_o * g.wi.z - sin_o * along;
     const AffineForm radial = angle_above(sqrt(sqr(x) + sqr(y)), z);
     using Pieces = GridPieces<3, 100>;
-    const auto axis = [](const std::vector<float>& nodes) { return GridAxis{int(nodes.size()), false, nodes}; };
+    const auto axis = [](const std::vector<float>& nodes) {
+      return GridAxis{int(nodes.size()), false, nodes};
+    };
     const Pieces pieces({axis(axes.theta_o), axis(axes.azimuth), axis(axes.radial)},
                         {polar_angle(sin_o, g.cos_theta_o), azimuth(y, x), radial});
     return {channel(pieces, 0), channel(pieces, 1), channel(pieces, 2)};

@@ -39,11 +39,11 @@ inline HalfFrame half_frame(const ShadingGeometry<AffineForm>& g) {
 // wo is wi mirrored in wh, and so d.x and d.y are those of wo with the other sign: wo + wi has less than
 // 4 length_tolerance that is not along wh (sum_of_directions, in enclosure.hpp; elsewhere 20 u), of which half
 // enters, and the float formula rounds by less than 8 u.
-inline Difference<AffineForm> difference_vector(const ShadingGeometry<AffineForm>& g, const HalfFrame& frame) {
+inline Difference<AffineForm> difference_vector(const ShadingGeometry<AffineForm>& g,
+                                                const HalfFrame& frame) {
   const AffineForm off = AffineForm::anything_in({-3 * length_tolerance, 3 * length_tolerance});
   const AffineForm &cosine = frame.azimuth.x, &sine = frame.azimuth.y;
-  const AffineForm x =
-      frame.sin_theta_h * g.wo.z - g.cos_theta_h * (cosine * g.wo.x + sine * g.wo.y);
+  const AffineForm x = frame.sin_theta_h * g.wo.z - g.cos_theta_h * (cosine * g.wo.x + sine * g.wo.y);
   return {frame.sin_theta_h, {x + off, sine * g.wo.x - cosine * g.wo.y + off, g.cos_theta_d}};
 }
 

@@ -143,7 +143,8 @@ DomainPointT<AffineForm> lift_box(const D& domain, const Vec3<AffineForm>& wo, c
       const Vec2<AffineForm> half_azimuth = cos_sin_half(p.x);
       // The map keeps wh from the normal; the length of its azimuth's vector errs by 6e-7, the angle by as much.
       constexpr double off = 1e-6;
-      AffineForm angle = AffineForm(0.5 * pi_v<double>) * (AffineForm(1) - p.x) + AffineForm::anything_in({-off, off});
+      AffineForm angle =
+          AffineForm(0.5 * pi_v<double>) * (AffineForm(1) - p.x) + AffineForm::anything_in({-off, off});
       angle.range = intersection(angle.range, {0, pi_v<double> + off});
       out.geometry.azimuth_h = {widened(half_azimuth.y, off), widened(half_azimuth.x, off), angle};
     }
