@@ -162,7 +162,8 @@ std::string no_proof(const AnyBrdf& f) {
 Certification certify(SamplerData& data, const AnyBrdf& f, const CertifyOptions& options,
                       const Host& the_host) {
   check(options);
-  const Host host = completed(the_host);
+  Host host = completed(the_host);
+  if (!f.traits().concurrent) host.parallel_for = Host().parallel_for;
   std::string refusal = no_proof(f);
   if (refusal.empty() && !data.frame.isotropic()) refusal = "no interval form of viewers with an azimuth";
   if (refusal.empty() && !data.domain.half()) refusal = "no interval form of whole squares";
