@@ -150,8 +150,8 @@ void raise(MajorantTree& tree, const SlabProof& slab, bool certified) {
 std::string no_proof(const AnyBrdf& f) {
   const BrdfTraits& traits = f.traits();
   if (!traits.enclosure)
-    return "no interval form: it is known at points alone; models, MERL tables, fits and sums of them have one, "
-           "and functions with bound() or lipschitz()";
+    return "no interval form: it is known at points alone; models, MERL tables, fits, sums of them, "
+           "and functions with bound() or lipschitz() have one";
   if (traits.channels != 1 && traits.channels != 3)
     return "no interval form of a function of this many channels";
   if (!traits.isotropic_by_formula)
