@@ -46,10 +46,9 @@ class Certify(ProgramTest):
         self.assertEqual((self.folder / "plain.rfl").read_bytes(), (self.folder / "at_once.rfl").read_bytes())
 
     def test_what_cannot_be_proved(self):
-        for material in ("baked_matt", "ggx:alpha_y=0.3,alpha_x=0.1..0.5"):
-            _, words = self.run_program("build", material, "-o", "no.rfl", "--certify", code=2)
-            self.assertIn("no interval form", words)
-            self.assertFalse((self.folder / "no.rfl").exists())
+        _, words = self.run_program("build", "ggx:alpha_y=0.3,alpha_x=0.1..0.5", "-o", "no.rfl", "--certify", code=2)
+        self.assertIn("no interval form", words)
+        self.assertFalse((self.folder / "no.rfl").exists())
         self.run_program("certify", MATERIAL, code=2)
         self.run_program("certify", "nowhere.rfl", code=2)
 

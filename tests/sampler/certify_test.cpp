@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "functions.hpp"
 #include "reflectree/brdf/material/mixture.hpp"
 #include "reflectree/brdf/tables/half_angle_table.hpp"
@@ -205,6 +207,27 @@ TEST(Certify, OwnBoundsAreDetectedAndProve) {
     EXPECT_LE(largest_share(data, f, 100000, 3), 1);
     EXPECT_EQ(build(Chalk()).exact, before.exact) << "an own bound changes no build";
   }
+}
+struct SerialChalk : BoundedChalk {
+  std::shared_ptr<std::atomic<int>> inside = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<std::atomic<int>> overlaps = std::make_shared<std::atomic<int>>(0);
+  float bound(const DirectionCell& cell) const {
+    if (inside->fetch_add(1) > 0) ++*overlaps;
+    const float most = BoundedChalk::bound(cell);
+    --*inside;
+    return most;
+  }
+  BrdfTraits traits() const {
+    BrdfTraits traits = Chalk::traits();
+    traits.concurrent = false;
+    return traits;
+  }
+};
+TEST(Certify, AsksAFunctionOfOneThreadFromOneThread) {
+  const SerialChalk chalk;
+  SamplerData data = build(chalk);
+  certify(data, chalk, {}, uneven_threads(4));
+  EXPECT_EQ(*chalk.overlaps, 0);
 }
 // The twin: bounds that are contradicted by values at points.
 TEST(CertifyTwin, OwnBoundsThatLieAreFound) {

@@ -170,8 +170,8 @@ void raise(MajorantTree& tree, const SlabProof& slab, bool certified) {
 std::string no_proof(const AnyBrdf& f) {
   const BrdfTraits& traits = f.traits();
   if (!traits.enclosure)
-    return "no interval form: it is known at points alone; models, MERL tables, fits and sums of them have one, "
-           "and functions with bound() or lipschitz()";
+    return "no interval form: it is known at points alone; models, MERL tables, fits, sums of them, "
+           "and functions with bound() or lipschitz() have one";
   if (traits.channels != 1 && traits.channels != 3)
     return "no interval form of a function of this many channels";
   return "";
@@ -193,7 +193,8 @@ namespace {
 template <class F>
 Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options, const Host& the_host) {
   check(options);
-  const Host host = completed(the_host);
+  Host host = completed(the_host);
+  if (!f.traits().concurrent) host.parallel_for = Host().parallel_for;
   const std::string refusal = no_proof(f);
   if (!refusal.empty()) throw Error(refusal, data.material, "its bounds stay estimated");
   host.stage("proving the bounds");
