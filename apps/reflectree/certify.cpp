@@ -56,10 +56,9 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
                            [](const MajorantTree& t) { return t.status == BoundStatus::certified; });
       };
       const FilePlaces places = context.places();
-      const bool all =
-          names_family(o->sampler, places)
-              ? save(certified(context, reflectree::open_family(o->sampler, places), o->certify))
-              : save(certified(context, open_sampler_file(o->sampler, places), o->certify));
+      const bool all = names_family(o->sampler, places)
+                           ? save(certified(context, reflectree::open_family(o->sampler, places), o->certify))
+                           : save(certified(context, open_sampler_file(o->sampler, places), o->certify));
       return int(all ? exit_success : exit_check_failed);
     };
   });

@@ -178,7 +178,8 @@ std::string no_proof(const AnyBrdf& f) {
 
 std::string no_proof(const AnyFamily& family) {
   if (!family.enclosure()) {
-    return "no interval form of this family: models whose numbers vary have one, where no azimuth varies and two "
+    return "no interval form of this family: models whose numbers vary have one, where no azimuth varies and "
+           "two "
            "widths do not meet";
   }
   if (family.channels() != 1 && family.channels() != 3)
@@ -190,7 +191,8 @@ namespace {
 
 // f: a function or a family.
 template <class F>
-Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options, const Host& the_host) {
+Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options,
+                          const Host& the_host) {
   check(options);
   const Host host = completed(the_host);
   const std::string refusal = no_proof(f);

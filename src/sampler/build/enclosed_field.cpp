@@ -79,7 +79,8 @@ AffineForm EnclosedField::target_over(const ShadingGeometry<AffineForm>& g, cons
   return out;
 }
 
-EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const {
+EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known,
+                                  const PackedLeaf& leaf) const {
   std::array<AffineForm, 2 + max_parameters> unknown{AffineForm::variable(0, box.lo[0], box.hi[0])};
   for (std::size_t i = 3; i < axes(); ++i) unknown[i - 2] = AffineForm::variable(i, box.lo[i], box.hi[i]);
   const ViewerForms viewer = viewer_.over(unknown, known);
@@ -94,7 +95,8 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known, 
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
-  const DomainPointT<AffineForm> lifted = lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
+  const DomainPointT<AffineForm> lifted =
+      lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
   EnclosedPoint out{target_over(lifted.geometry, viewer, lifted.projected_area), std::nullopt,
                     viewer.albedo * at.height};
   if (both_sides_) {
