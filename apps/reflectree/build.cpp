@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "info.hpp"
+#include "reflectree/brdf/material/material.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/formats/sampler_file.hpp"
 #include "subject.hpp"
@@ -26,9 +27,13 @@ namespace {
 // As above: a material whose bounds cannot be proved.
 void check_provable(const Context& context, const std::string& material) {
   const FilePlaces places = context.places();
-  const std::string refusal = names_family(material, places)
-                                  ? no_proof(make_family(parse_material(material, places), places))
-                                  : no_proof(open_brdf(material, places));
+  const std::string refusal =
+      names_family(material, places)
+          ? no_proof(make_family(parse_material(material, places),
+                                 [&](const std::string& file, const std::string& member) {
+                                   return open_brdf(file_text(file, member), places);
+                                 }))
+          : no_proof(open_brdf(material, places));
   if (!refusal.empty()) throw Error(refusal, material, "leave out --certify; its bounds stay estimated");
 }
 

@@ -135,12 +135,12 @@ AffineForm asinh(const AffineForm& the_x) {
   const Settled settled(the_x);
   const AffineForm& x = settled.form();
   const double a = x.range.lo, b = x.range.hi;
-  const RealInterval range =
-      detail::ascending([](double v) { return std::asinh(v); }, x.range);
+  const RealInterval range = detail::ascending([](double v) { return std::asinh(v); }, x.range);
   if (!is_known(x) || !std::isfinite(a) || !std::isfinite(b)) return only_range(range, library);
   const auto f = [](double v) { return std::asinh(v); };
   const double alpha = b - a > 1e-7 * (1 + std::abs(a)) ? (f(b) - f(a)) / (b - a) : 1 / std::hypot(1, a);
-  double low = std::min(f(a) - alpha * a, f(b) - alpha * b), high = std::max(f(a) - alpha * a, f(b) - alpha * b);
+  double low = std::min(f(a) - alpha * a, f(b) - alpha * b),
+         high = std::max(f(a) - alpha * a, f(b) - alpha * b);
   // Where its slope, 1 / sqrt(1 + t^2), is alpha.
   const double place = std::sqrt(std::max(1 / (alpha * alpha) - 1, 0.));
   for (const double t : {std::clamp(place, a, b), std::clamp(-place, a, b)})

@@ -49,7 +49,8 @@ DomainPointT<AffineForm> lifted_box(const Domain& domain, const Box& box) {
   AffineForm c = widened(cos(theta), length_tolerance);
   const AffineForm s = widened(sin(theta), length_tolerance);
   c.range.hi = std::min(c.range.hi, 1.);
-  return lift_box(domain, Vec3<AffineForm>{s * cos(phi), s * sin(phi), c}, {box.variable(1), box.variable(2)});
+  return lift_box(domain, Vec3<AffineForm>{s * cos(phi), s * sin(phi), c},
+                  {box.variable(1), box.variable(2)});
 }
 DomainPoint lifted(const Domain& domain, const Point& at) {
   const double s = std::sin(at[0]);
@@ -102,11 +103,12 @@ Seen compare_model(const M& model, float scale = 1) {
 
 TEST(AzimuthEnclosure, HoldsAnisotropicModels) {
   for (const float degrees : {0.f, 30.f}) {
-    const Seen seen[] = {compare_model(Ggx{Widths(0.05f, 0.3f), {1, 0.8f, 0.3f}, degrees}),
-                         compare_model(Ward{{}, {0.6f, 0.6f, 0.6f}, 0.1f, 0.4f, degrees}),
-                         compare_model(AshikhminShirley{{}, {0.05f, 0.05f, 0.05f}, 10, 100, degrees}),
-                         compare_model(CookTorrance{{}, {0.8f, 0.8f, 0.8f}, {1, 1, 1}, Widths(0.1f, 0.4f), degrees}),
-                         compare_model(Plastic{{}, 0.04f, Widths(0.1f, 0.4f), degrees})};
+    const Seen seen[] = {
+        compare_model(Ggx{Widths(0.05f, 0.3f), {1, 0.8f, 0.3f}, degrees}),
+        compare_model(Ward{{}, {0.6f, 0.6f, 0.6f}, 0.1f, 0.4f, degrees}),
+        compare_model(AshikhminShirley{{}, {0.05f, 0.05f, 0.05f}, 10, 100, degrees}),
+        compare_model(CookTorrance{{}, {0.8f, 0.8f, 0.8f}, {1, 1, 1}, Widths(0.1f, 0.4f), degrees}),
+        compare_model(Plastic{{}, 0.04f, Widths(0.1f, 0.4f), degrees})};
     for (const Seen& s : seen) {
       EXPECT_EQ(s.missed, 0);
       EXPECT_GT(s.finite, s.boxes / 3) << "an enclosure of everything would prove nothing";
@@ -121,9 +123,9 @@ TEST(AzimuthEnclosureTwin, AnotherFunctionIsFound) {
 // A width that varies with the box.
 Seen compare_family(double off) {
   const AnyFamily family = model_family(Ggx{}, {{"alpha", 0.01f, 1}});
-  return compare(
-      [&](const Box& box, const auto& g) { return (*family.enclosure())(g, {box.variable(4)}).g; },
-      [&](const Point& at, const auto& g) { return family(g, {float(off * at[4])}).data()[1]; }, 400);
+  return compare([&](const Box& box, const auto& g) { return (*family.enclosure())(g, {box.variable(4)}).g; },
+                 [&](const Point& at, const auto& g) { return family(g, {float(off * at[4])}).data()[1]; },
+                 400);
 }
 TEST(FamilyEnclosure, HoldsItsMembers) {
   const Seen seen = compare_family(1);
@@ -133,8 +135,10 @@ TEST(FamilyEnclosure, HoldsItsMembers) {
 TEST(FamilyEnclosureTwin, AnotherMemberIsFound) { EXPECT_GT(compare_family(1.01).missed, 0); }
 
 TEST(FamilyEnclosure, IsMissingWhereFormulasChange) {
-  EXPECT_TRUE(model_family(Ggx{Widths(0.3f, 0.1f)}, {{"alpha_y", 0.02f, 0.2f}}).f.enclosure({{"alpha_y", 0.02f, 0.2f}}));
-  EXPECT_FALSE(model_family(Ggx{Widths(0.3f, 0.1f)}, {{"alpha_y", 0.02f, 0.5f}}).f.enclosure({{"alpha_y", 0.02f, 0.5f}}));
+  EXPECT_TRUE(model_family(Ggx{Widths(0.3f, 0.1f)}, {{"alpha_y", 0.02f, 0.2f}})
+                  .f.enclosure({{"alpha_y", 0.02f, 0.2f}}));
+  EXPECT_FALSE(model_family(Ggx{Widths(0.3f, 0.1f)}, {{"alpha_y", 0.02f, 0.5f}})
+                   .f.enclosure({{"alpha_y", 0.02f, 0.5f}}));
 }
 
 TEST(AzimuthEnclosure, SmallerBoxesGiveNarrowerForms) {

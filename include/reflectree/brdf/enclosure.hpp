@@ -140,7 +140,8 @@ using ParameterForms = std::array<AffineForm, max_parameters>;
 class FamilyEnclosure {
  public:
   virtual ~FamilyEnclosure() = default;
-  virtual RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g, const ParameterForms& at) const = 0;
+  virtual RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g,
+                                      const ParameterForms& at) const = 0;
   // Of all members.
   virtual ExactSymmetry keeps() const { return {}; }
 };

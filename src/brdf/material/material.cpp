@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reflectree/brdf/enclosure.hpp"
 #include "reflectree/brdf/material/material.hpp"
+#include "reflectree/brdf/enclosure.hpp"
 
 #include <algorithm>
 #include <optional>

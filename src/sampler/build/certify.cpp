@@ -179,7 +179,8 @@ std::string no_proof(const AnyBrdf& f) {
 
 std::string no_proof(const AnyFamily& family) {
   if (!family.enclosure()) {
-    return "no interval form of this family: models whose numbers vary have one, where no azimuth varies and two "
+    return "no interval form of this family: models whose numbers vary have one, where no azimuth varies and "
+           "two "
            "widths do not meet";
   }
   if (family.channels() != 1 && family.channels() != 3)
@@ -191,7 +192,8 @@ namespace {
 
 // f: a function or a family.
 template <class F>
-Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options, const Host& the_host) {
+Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& options,
+                          const Host& the_host) {
   check(options);
   Host host = completed(the_host);
   if (!f.traits().concurrent) host.parallel_for = Host().parallel_for;

@@ -28,8 +28,7 @@ RowForm row_over(const PackedAlbedo& table, const AffineForm& cosine, const Piec
     return double(piece.base) + double(piece.slope) * c;
   };
   const double a = double(lo), b = double(hi);
-  const double alpha =
-      b > a ? (value(last, b) - value(first, a)) / (b - a) : double(piece_at(first).slope);
+  const double alpha = b > a ? (value(last, b) - value(first, a)) / (b - a) : double(piece_at(first).slope);
   RealInterval offset{infinity, -infinity}, range{infinity, -infinity};
   double size = 0;
   for (std::size_t i = first; i <= last; ++i) {
@@ -83,7 +82,8 @@ Level level_over(const AffineForm& x, std::size_t last, std::size_t stride) {
     const double alpha = hi > lo ? (at(k1, hi).value - at(k0, lo).value) / (hi - lo) : 0;
     RealInterval offset{infinity, -infinity}, range{infinity, -infinity};
     for (std::size_t k = k0; k <= k1; ++k) {
-      const double from = k == k0 ? lo : double(k), to = k == k1 ? hi : double(k + 1), third = (to - from) / 3;
+      const double from = k == k0 ? lo : double(k), to = k == k1 ? hi : double(k + 1),
+                   third = (to - from) / 3;
       const Weight a = at(k, from), b = at(k, to);
       const double points[4][2] = {{from, a.value},
                                    {from + third, a.value + third * a.slope},
@@ -118,7 +118,9 @@ class Sum {
     if (depth == 0) return row(index);
     const Level& level = levels_[depth - 1];
     const std::size_t middle = level.weights.size() / 2;
-    const auto below = [&](std::size_t j) { return over(depth - 1, index + (level.first + j) * level.stride); };
+    const auto below = [&](std::size_t j) {
+      return over(depth - 1, index + (level.first + j) * level.stride);
+    };
     const AffineForm base = below(middle);
     AffineForm sum = base;
     for (std::size_t j = 0; j < level.weights.size(); ++j) {
@@ -128,7 +130,8 @@ class Sum {
   }
   AffineForm row(std::size_t index) {
     const RowForm r = row_over(table_, cosine_, [&](std::size_t column) -> const AlbedoPiece& {
-      return table_.pieces[table_.parameters.empty() ? index * table_.row + column : column * table_.row + index];
+      return table_
+          .pieces[table_.parameters.empty() ? index * table_.row + column : column * table_.row + index];
     });
     size_ = std::max(size_, r.size);
     return r.form;

@@ -44,7 +44,8 @@ Vec3<AffineForm> turned_by(const Vec3<AffineForm>& w, const AffineForm& cosine, 
 
 }  // namespace
 
-EnclosedViewer::EnclosedViewer(const PackedViewer& viewer, bool turned) : viewer_(viewer), azimuth_(!turned) {}
+EnclosedViewer::EnclosedViewer(const PackedViewer& viewer, bool turned)
+    : viewer_(viewer), azimuth_(!turned) {}
 
 Elevations EnclosedViewer::elevations(const KnownRange& known) const {
   const RealInterval longer = RealInterval(1) + RealInterval(-length_tolerance, length_tolerance);
@@ -75,7 +76,8 @@ std::array<RealInterval, 1 + max_parameters> EnclosedViewer::unknowns(const Know
 ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters>& unknown,
                                  const KnownRange& known) const {
   ViewerForms v;
-  const AffineForm c = clipped(widened(cos(unknown[0]), length_tolerance), {double(known.lo), double(known.hi)});
+  const AffineForm c =
+      clipped(widened(cos(unknown[0]), length_tolerance), {double(known.lo), double(known.hi)});
   const AffineForm s = widened(sin(unknown[0]), length_tolerance);
   v.wo = v.framed = {s, AffineForm(0), c};
   std::size_t next = 1, slot = 0;
@@ -120,7 +122,8 @@ DomainForms EnclosedViewer::domain_of(const Domain& domain, const ViewerForms& v
       exponent = exponent + AffineForm(w.slope[i]) * (v.coordinates[i] - AffineForm(w.corner[i]));
     return AffineForm(w.largest) * exp(exponent);
   };
-  DomainForms out{domain.kind, domain.exponent, domain.stretch, AffineForm(domain.scale_x), AffineForm(domain.scale_y)};
+  DomainForms out{domain.kind, domain.exponent, domain.stretch, AffineForm(domain.scale_x),
+                  AffineForm(domain.scale_y)};
   if (domain.kind != DomainKind::scaled_star || family.count == 0) return out;
   out.scale_x = width(family.x), out.scale_y = family.round ? out.scale_x : width(family.y);
   return out;
@@ -132,8 +135,8 @@ bool EnclosedViewer::axis_is_coordinate() const {
 
 std::vector<ViewerImage> EnclosedViewer::images(const ExactSymmetry& keeps) const {
   const ViewerSymmetry symmetry = viewer_.frame.symmetry;
-  const bool turns = (symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::half_turn) &&
-                     !keeps.half_turns;
+  const bool turns =
+      (symmetry == ViewerSymmetry::two_planes || symmetry == ViewerSymmetry::half_turn) && !keeps.half_turns;
   const bool mirrors = is_mirrored(symmetry) && !(axis_is_coordinate() && keeps.mirrored_axes);
   std::vector<ViewerImage> out;
   for (const bool half_turn : {false, true}) {
@@ -159,8 +162,8 @@ Vec3<AffineForm> EnclosedViewer::from_axis(const Vec3<AffineForm>& w) const {
   return turned_by(w, AffineForm(c), AffineForm(s));
 }
 
-ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
-                                                       ViewerImage image) const {
+ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<AffineForm>& g,
+                                                       const ViewerForms& v, ViewerImage image) const {
   if (!azimuth_) return g;
   const auto imaged = [&](Vec3<AffineForm> w) {
     if (image.mirrored) w.y = -w.y;

@@ -23,9 +23,9 @@ struct Elevations {
 };
 
 struct ViewerForms {
-  Vec3<AffineForm> wo;               // in the frame of the domain
-  Vec3<AffineForm> framed;           // in the viewer's frame, folded
-  AffineForm cos_phi, sin_phi;       // of its azimuth there
+  Vec3<AffineForm> wo;          // in the frame of the domain
+  Vec3<AffineForm> framed;      // in the viewer's frame, folded
+  AffineForm cos_phi, sin_phi;  // of its azimuth there
   AffineForm albedo;
   ParameterForms parameters, coordinates;
 };

@@ -30,7 +30,8 @@ double upper(const EnclosedPoint& p, double bound) {
 
 class Proof {
  public:
-  Proof(const EnclosedField& field, const KnownRange& known, const PackedLeaf& leaf, const ProofLimits& limits)
+  Proof(const EnclosedField& field, const KnownRange& known, const PackedLeaf& leaf,
+        const ProofLimits& limits)
       : field_(field),
         known_(known),
         leaf_(leaf),

@@ -120,7 +120,8 @@ class ModelFamily {
 
  private:
   std::size_t place_of(const float* number) const {
-    return std::size_t(reinterpret_cast<const std::byte*>(number) - reinterpret_cast<const std::byte*>(&model_));
+    return std::size_t(reinterpret_cast<const std::byte*>(number) -
+                       reinterpret_cast<const std::byte*>(&model_));
   }
   // The parameter that a number of the model follows; max_parameters where there is none.
   std::size_t follows(const float* number) const {

@@ -65,10 +65,10 @@ struct CookTorranceOf {
         {{"kd", &CookTorranceOf::kd, 0, 1, "", "diffuse albedo"},
          {"ks", &CookTorranceOf::ks, 0, 1, "", "weight of the microfacets"},
          {"f0", &CookTorranceOf::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
-         {"alpha_x", typename ModelParameter<CookTorranceOf>::Width{&CookTorranceOf::alpha, &WidthsOf<N>::x}, 1e-3f, 1, "",
-          "microfacet width along x (m in the paper)"},
-         {"alpha_y", typename ModelParameter<CookTorranceOf>::Width{&CookTorranceOf::alpha, &WidthsOf<N>::y}, 1e-3f, 1, "",
-          "microfacet width along y"},
+         {"alpha_x", typename ModelParameter<CookTorranceOf>::Width{&CookTorranceOf::alpha, &WidthsOf<N>::x},
+          1e-3f, 1, "", "microfacet width along x (m in the paper)"},
+         {"alpha_y", typename ModelParameter<CookTorranceOf>::Width{&CookTorranceOf::alpha, &WidthsOf<N>::y},
+          1e-3f, 1, "", "microfacet width along y"},
          {"phi_deg", &CookTorranceOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };

@@ -27,12 +27,13 @@ struct OrenNayarOf {
 
   BrdfTraits traits() const { return model_traits(*this); }
   static ModelDescription<OrenNayarOf> describe() {
-    return {"oren_nayar",
-            ModelClass::approximate,
-            "rough diffuse surface, qualitative model",
-            "Oren and Nayar 1994, Generalization of Lambert's reflectance model",
-            {{"rho", &OrenNayarOf::rho, 0, 1, "", "albedo of a facet"},
-             {"sigma", &OrenNayarOf::sigma, 0, 1.5707964f, "rad", "standard deviation of the facets' angles"}}};
+    return {
+        "oren_nayar",
+        ModelClass::approximate,
+        "rough diffuse surface, qualitative model",
+        "Oren and Nayar 1994, Generalization of Lambert's reflectance model",
+        {{"rho", &OrenNayarOf::rho, 0, 1, "", "albedo of a facet"},
+         {"sigma", &OrenNayarOf::sigma, 0, 1.5707964f, "rad", "standard deviation of the facets' angles"}}};
   }
 };
 using OrenNayar = OrenNayarOf<float>;

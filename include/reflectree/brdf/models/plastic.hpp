@@ -35,10 +35,10 @@ struct PlasticOf {
             "Shirley et al. 1997, A practitioners' assessment of light reflection models; Walter et al. 2007",
             {{"kd", &PlasticOf::kd, 0, 1, "", "albedo of the base"},
              {"f0", &PlasticOf::f0, 0, 1, "", "Fresnel reflectance of the coat at normal incidence"},
-             {"alpha_x", typename ModelParameter<PlasticOf>::Width{&PlasticOf::alpha, &WidthsOf<N>::x}, 1e-3f, 1, "",
-              "microfacet width of the coat along x"},
-             {"alpha_y", typename ModelParameter<PlasticOf>::Width{&PlasticOf::alpha, &WidthsOf<N>::y}, 1e-3f, 1, "",
-              "microfacet width of the coat along y"},
+             {"alpha_x", typename ModelParameter<PlasticOf>::Width{&PlasticOf::alpha, &WidthsOf<N>::x}, 1e-3f,
+              1, "", "microfacet width of the coat along x"},
+             {"alpha_y", typename ModelParameter<PlasticOf>::Width{&PlasticOf::alpha, &WidthsOf<N>::y}, 1e-3f,
+              1, "", "microfacet width of the coat along y"},
              {"phi_deg", &PlasticOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }
 };

@@ -32,10 +32,12 @@ struct RetroReflectorOf {
             "GGX lobe about the direction of the viewer",
             "Belcour et al. 2014, BRDF measurements and analysis of retroreflective materials; Walter et al. "
             "2007",
-            {{"alpha_x", typename ModelParameter<RetroReflectorOf>::Width{&RetroReflectorOf::alpha, &WidthsOf<N>::x}, 1e-3f, 1,
-              "", "microfacet width along x"},
-             {"alpha_y", typename ModelParameter<RetroReflectorOf>::Width{&RetroReflectorOf::alpha, &WidthsOf<N>::y}, 1e-3f, 1,
-              "", "microfacet width along y"},
+            {{"alpha_x",
+              typename ModelParameter<RetroReflectorOf>::Width{&RetroReflectorOf::alpha, &WidthsOf<N>::x},
+              1e-3f, 1, "", "microfacet width along x"},
+             {"alpha_y",
+              typename ModelParameter<RetroReflectorOf>::Width{&RetroReflectorOf::alpha, &WidthsOf<N>::y},
+              1e-3f, 1, "", "microfacet width along y"},
              {"f0", &RetroReflectorOf::f0, 0, 1, "", "Fresnel reflectance at normal incidence"},
              {"phi_deg", &RetroReflectorOf::phi, -360, 360, "degrees", "azimuth of x"}}};
   }

@@ -87,7 +87,8 @@ inline AffineForm radius_per_y(const detail::SlopeStar<AffineForm>& star, const 
   return narrower(narrower(plain, inside), by_rim);
 }
 // Both squares are r^2 q; what they round is relative.
-inline AffineForm squared_normal(const Vec2<AffineForm>&, const Vec2<AffineForm>& along, const AffineForm& r) {
+inline AffineForm squared_normal(const Vec2<AffineForm>&, const Vec2<AffineForm>& along,
+                                 const AffineForm& r) {
   return widened(AffineForm(1) + (sqr(along.x) + sqr(along.y)) * sqr(r), 8 * 0x1p-24);
 }
 // With q and b of slope_star_map.hpp and the roots R and -1 / (q R) of z + 2 b r - q z r^2,
@@ -96,8 +97,7 @@ inline AffineForm squared_normal(const Vec2<AffineForm>&, const Vec2<AffineForm>
 // a b that is off by 4 u of its terms, and wo.n errs by 4 u of its own, which are r times as large.
 inline AffineForm reflected_cosine(const AffineForm& twice, const Vec3<AffineForm>& wo,
                                    const detail::SlopeStar<AffineForm>& star, const Vec2<AffineForm>& along,
-                                   const AffineForm& y, const AffineForm& d,
-                                   const AffineForm& cos2_theta_h) {
+                                   const AffineForm& y, const AffineForm& d, const AffineForm& cos2_theta_h) {
   constexpr double u = 0x1p-24;
   const AffineForm plain = twice - wo.z, r = y * d;
   const double off = 24 * u * std::max(1., d.range.hi);

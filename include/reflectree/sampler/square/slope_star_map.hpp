@@ -56,7 +56,8 @@ REFLECTREE_INLINE T squared_normal(const Vec2<T>& tau, const Vec2<T>&, T) {
 // cos theta_i = 2 (wo.n) / (n.n) - cos theta_o of a place of the star. Where nothing is known but a box of
 // places (enclosed_map.hpp) the other arguments serve.
 template <class T>
-REFLECTREE_INLINE T reflected_cosine(T twice, const Vec3<T>& wo, const SlopeStar<T>&, const Vec2<T>&, T, T, T) {
+REFLECTREE_INLINE T reflected_cosine(T twice, const Vec3<T>& wo, const SlopeStar<T>&, const Vec2<T>&, T, T,
+                                     T) {
   return twice - wo.z;
 }
 template <class T, class Map>
