@@ -79,6 +79,37 @@ TYPED_TEST(ModelEnclosure, IsMirrorSymmetric) {
   }
 }
 
+// What a proof does not look at: where x and y of all directions change their signs, or y alone.
+TYPED_TEST(ModelEnclosure, KeepsWhatItSays) {
+  Pcg32 bits(9);
+  for (int i = 0; i < 300; ++i) {
+    const TypeParam model = i == 0 ? TypeParam() : random_model<TypeParam>(bits);
+    const BrdfTraits traits = model.traits();
+    const ExactSymmetry keeps = symmetry_of_model(model);
+    for (const Pair& pair : test_pairs(2, bits)) {
+      const auto imaged = [&](const ShadingGeometry<float>& g, float x, float y) {
+        const auto image = [=](Direction w) { return Direction{x * w.x, y * w.y, w.z}; };
+        return ShadingGeometry<float>{image(g.wo), image(g.wi), image(g.wh),
+                                      g.cos_theta_o, g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
+      };
+      const ShadingGeometry<float> g = shading_geometry(pair.wo, pair.wi);
+      const auto value = model(g);
+      if (keeps.half_turns) EXPECT_EQ(value, model(imaged(g, -1, -1))) << traits.name;
+      if (keeps.mirrored_axes) EXPECT_EQ(value, model(imaged(g, 1, -1))) << traits.name;
+    }
+  }
+}
+// The twin: a lobe that is turned does not return the same, and does not say so.
+TEST(ModelEnclosureTwin, ATurnedLobeKeepsNoMirroredAxes) {
+  Ggx model;
+  model.alpha.x = 0.1f, model.alpha.y = 0.4f;
+  EXPECT_TRUE(symmetry_of_model(model).mirrored_axes);
+  model.phi = Azimuth(20);
+  EXPECT_FALSE(symmetry_of_model(model).mirrored_axes);
+  const Direction wo{0.6f, 0, 0.8f}, wi{-0.48f, 0.36f, 0.8f}, image{-0.48f, -0.36f, 0.8f};
+  EXPECT_NE(model(shading_geometry(wo, wi)), model(shading_geometry(wo, image)));
+}
+
 TYPED_TEST(ModelEnclosure, SharperBoxesGiveSharperBounds) {
   Pcg32 bits(6);
   const TypeParam model;

@@ -130,8 +130,7 @@ class Sum {
   }
   AffineForm row(std::size_t index) {
     const RowForm r = row_over(table_, cosine_, [&](std::size_t column) -> const AlbedoPiece& {
-      return table_
-          .pieces[table_.parameters.empty() ? index * table_.row + column : column * table_.row + index];
+      return table_.pieces[column * table_.row + index];
     });
     size_ = std::max(size_, r.size);
     return r.form;

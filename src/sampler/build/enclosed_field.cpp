@@ -33,6 +33,11 @@ AffineForm reduced(const Target& target, const RgbT<AffineForm>& f, int channels
 
 void check_value(const EnclosedPoint& enclosed, const PointValue& value) {
   const auto holds = [&](const AffineForm& form) { return form.range.contains(double(value.target)); };
+  // Here a quotient of the leaf's height rounds twice more.
+  const RealInterval unit = widened(enclosed.unit, 8 * 0x1p-24).range;
+  if (value.unit > 0 && !unit.contains(double(value.unit)))
+    throw Error("the albedo that is looked up is not what its enclosure holds", "proof of the bounds",
+                "this is a mistake of ours; the bounds stay estimated");
   if (holds(enclosed.target) || (enclosed.mirrored && holds(*enclosed.mirrored))) return;
   throw Error("the function returns values that its enclosure does not hold", "proof of the bounds",
               "give it the enclosure of its own formula, or none");

@@ -19,7 +19,9 @@ AffineForm clipped(AffineForm x, RealInterval range) {
 AffineForm slack(double size) { return AffineForm::anything_in({-size, size}); }
 
 // By how much an azimuth that angle_of() tells may be off: 3e-7 of itself; where a whole turn is added to a negative
-// one, that of half a turn, and two roundings.
+// one, that of half a turn, and two roundings. A slab is found by azimuth_key, which ascends at least half as fast:
+// in the first quadrant both keys err by 3 u of themselves, up to half a turn by 4 u, beyond that by 7 u, and so the
+// azimuth by no more than this.
 double azimuth_error(ViewerSymmetry symmetry, double phi) {
   return symmetry == ViewerSymmetry::none || symmetry == ViewerSymmetry::isotropic ? 1.5e-6 : 4e-7 * phi;
 }
@@ -95,7 +97,8 @@ ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters
     }
     if (!viewer_.frame.isotropic()) {
       const double off = azimuth_error(symmetry, phi.range.hi);
-      phi_o = clipped(phi + slack(off), known.beyond[slot++]);
+      phi_o = clipped(phi + slack(off), {0, span_of(symmetry) + off});
+      ++slot;
     }
     if (!viewer_.turns) v.wo = v.framed;
   }
