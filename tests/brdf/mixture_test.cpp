@@ -89,6 +89,20 @@ TEST(Mixture, CombinesTraits) {
   for (int c = 0; c < 5; ++c) EXPECT_FLOAT_EQ(value[c], 0.5f * 1.8f + float(c));
 }
 
+struct ToldAlbedo {
+  float operator()(Direction, Direction) const { return 0.3f; }
+  BrdfTraits traits() const {
+    BrdfTraits traits;
+    traits.channels = 1, traits.albedo = [](Direction) { return 0.3 * pi_v<double>; };
+    return traits;
+  }
+};
+TEST(Mixture, ScalesTheAlbedoThatIsTold) {
+  const AnyBrdf f = mixture({{0.5f, ToldAlbedo()}});
+  EXPECT_NEAR(f.traits().albedo({0, 0, 1}), 0.15 * pi_v<double>, 1e-12);
+  EXPECT_FALSE(mixture({{0.5f, ToldAlbedo()}, {0.5f, ToldAlbedo()}}).traits().albedo);
+}
+
 TEST(Mixture, RefusesWhatDoesNotFit) {
   EXPECT_THROW(mixture({}), Error);
   EXPECT_THROW(mixture({{1, Five{}}, {1, Lambert{}}}), Error);

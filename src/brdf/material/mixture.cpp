@@ -140,6 +140,11 @@ AnyBrdf mixture(std::vector<MixtureTerm> terms, std::string name) {
   if (terms.empty()) throw Error("has no terms", "mixture", "give at least one");
   BrdfTraits traits = terms.front().f.traits();
   traits.name = term_text(terms.front());
+  if (traits.albedo) {
+    traits.albedo = [albedo = traits.albedo, weight = double(terms.front().weight)](Direction wo) {
+      return weight * albedo(wo);
+    };
+  }
   for (std::size_t i = 1; i < terms.size(); ++i) {
     BrdfTraits next = terms[i].f.traits();
     next.name = term_text(terms[i]);
