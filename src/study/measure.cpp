@@ -119,6 +119,11 @@ MaterialResult measure(const StudyMaterial& material, std::span<const SamplerInf
   } catch (const Error&) {
     reference.clear();  // our modes will say it again, as their fault
   }
+  // Peers tabulate one azimuth of wo where traits say that it does not matter, and they do by default.
+  if (subject.packed && material.f.traits().isotropic && !subject.packed->viewer.frame.isotropic()) {
+    throw Error("depends on the azimuth of wo, and its traits say that it is isotropic", material.name,
+                "set BrdfTraits::isotropic to false");
+  }
   std::vector<std::optional<SamplerResult>> found(samplers.size());
   host.parallel_for(samplers.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

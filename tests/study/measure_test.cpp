@@ -144,6 +144,21 @@ Host many_chunks() {
   return host;
 }
 
+// Peers would tabulate it for one azimuth.
+TEST(Measure, RefusesAFunctionThatIsNotAsIsotropicAsItSays) {
+  const AnyBrdf f = [](Direction wo, Direction) { return 0.3f + 0.2f * wo.x; };
+  ASSERT_TRUE(f.traits().isotropic) << "by default";
+  std::vector<const SamplerInfo*> cosine{find_sampler("cosine")};
+  StudyOptions o;
+  o.samples = 256, o.theta_o_deg = {40}, o.round_seconds = 1e-5, o.curve_samples = 16, o.curve_repeats = 4;
+  try {
+    measure({"tilted", {}, f}, cosine, {}, o, {});
+    ADD_FAILURE() << "it was measured";
+  } catch (const Error& error) {
+    EXPECT_NE(error.wrong().find("depends on the azimuth"), std::string::npos) << error.what();
+  }
+}
+
 // Everything but the timings is the same however the work is cut up.
 TEST(Measure, DoesNotDependOnTheHost) {
   const StudyMaterial m{"ggx:alpha=0.4", parse_material("ggx:alpha=0.4"), brdf("ggx:alpha=0.4")};
