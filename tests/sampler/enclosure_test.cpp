@@ -94,8 +94,12 @@ TYPED_TEST(ModelEnclosure, KeepsWhatItSays) {
       };
       const ShadingGeometry<float> g = shading_geometry(pair.wo, pair.wi);
       const auto value = model(g);
-      if (keeps.half_turns) EXPECT_EQ(value, model(imaged(g, -1, -1))) << traits.name;
-      if (keeps.mirrored_axes) EXPECT_EQ(value, model(imaged(g, 1, -1))) << traits.name;
+      if (keeps.half_turns) {
+        EXPECT_EQ(value, model(imaged(g, -1, -1))) << traits.name;
+      }
+      if (keeps.mirrored_axes) {
+        EXPECT_EQ(value, model(imaged(g, 1, -1))) << traits.name;
+      }
     }
   }
 }

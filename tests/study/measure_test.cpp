@@ -146,7 +146,7 @@ Host many_chunks() {
 
 // Peers would tabulate it for one azimuth.
 TEST(Measure, RefusesAFunctionThatIsNotAsIsotropicAsItSays) {
-  const AnyBrdf f = [](Direction wo, Direction) { return 0.3f + 0.2f * wo.x; };
+  const AnyBrdf f = [](Direction viewer, Direction) { return 0.3f + 0.2f * viewer.x; };
   ASSERT_TRUE(f.traits().isotropic) << "by default";
   std::vector<const SamplerInfo*> cosine{find_sampler("cosine")};
   StudyOptions o;
