@@ -32,10 +32,11 @@ AffineForm reduced(const Target& target, const RgbT<AffineForm>& f, int channels
 }  // namespace
 
 void check_value(const EnclosedPoint& enclosed, const PointValue& value) {
+  if (!(value.unit > 0)) return;  // no sampler looks there
   const auto holds = [&](const AffineForm& form) { return form.range.contains(double(value.target)); };
   // Here a quotient of the leaf's height rounds twice more.
   const RealInterval unit = widened(enclosed.unit, 8 * 0x1p-24).range;
-  if (value.unit > 0 && !unit.contains(double(value.unit)))
+  if (!unit.contains(double(value.unit)))
     throw Error("the albedo that is looked up is not what its enclosure holds", "proof of the bounds",
                 "this is a mistake of ours; the bounds stay estimated");
   if (holds(enclosed.target) || (enclosed.mirrored && holds(*enclosed.mirrored))) return;
@@ -125,6 +126,7 @@ PointValue EnclosedField::at(const ProofPoint& point, const KnownRange& known, c
   const float c = clamp(float(std::cos(point[0])), known.lo, known.hi), s = float(std::sin(point[0]));
   Direction wo{s, 0, c};
   if (viewer_.sees_azimuth()) {
+    if (s == 0 && point[3] > 0) return {};  // the normal's azimuth is 0
     wo = {float(double(s) * std::cos(point[3])), float(double(s) * std::sin(point[3])), c};
     wo = turn(wo, packed_.viewer.cos_axis, packed_.viewer.sin_axis);
   }
