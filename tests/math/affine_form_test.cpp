@@ -13,7 +13,8 @@
 namespace reflectree {
 namespace {
 
-constexpr std::size_t n = AffineForm::variables;
+constexpr std::size_t n = 3;  // of the variables every other one
+static_assert(2 * n <= AffineForm::variables);
 using Point = std::array<double, n>;  // in [-1, 1]
 
 // Formulas of x in [-1, 1], y in [-3, 3], p in [0.01, 5] and q = (x + 1) 3/4, as models have them.
@@ -74,7 +75,7 @@ std::vector<Formula> formulas() {
           REFLECTREE_FORMULA(cos_sin_half(x).x * cos_sin_half(x).y)};
 }
 
-AffineForm variable(std::size_t k, RealInterval range) { return AffineForm::variable(k, range.lo, range.hi); }
+AffineForm variable(std::size_t k, RealInterval range) { return AffineForm::variable(2 * k, range.lo, range.hi); }
 
 struct Box {
   std::array<RealInterval, n> range;
@@ -101,7 +102,7 @@ bool holds(const AffineForm& form, const Point& e, long double value) {
   if (!form.range.contains(double(value))) return false;
   if (form.error == detail::infinity) return true;
   long double line = form.middle;
-  for (std::size_t k = 0; k < n; ++k) line += static_cast<long double>(form.slope[k]) * e[k];
+  for (std::size_t k = 0; k < n; ++k) line += static_cast<long double>(form.slope[2 * k]) * e[k];
   return std::abs(value - line) <= form.error * (1 + 1e-12L);
 }
 
