@@ -38,6 +38,11 @@ RFL_LOAD float rfl_finite(rfl_loader* l) {
   const float f = rfl_float(rfl_uint(l, 4));
   return rfl_check(l, fabsf(f) <= 3.40282347e38f), f;
 }
+/* As rfl_azimuth, of an angle. */
+RFL_FN float rfl_azimuth_of(float phi) {
+  const double x = cos((double)phi), y = sin((double)phi), q = fabs(y) / (fabs(x) + fabs(y)), upper = x < 0 ? 2 - q : q;
+  return phi >= 2 * rfl_pi ? 4.f : (float)(y < 0 ? 4 - upper : upper);
+}
 /* Of `border`, whose last becomes 2. The bits of a float index a guide, finer until no entry spans two borders. */
 RFL_LOAD void rfl_put_lookup(rfl_loader* l, uint32_t n, rfl_lookup* to) {
   const uint32_t least = rfl_word(rfl_min_cos), most = rfl_word(1.f) - least;
@@ -74,7 +79,7 @@ RFL_LOAD uint32_t rfl_partition(rfl_loader* l, rfl_lookup* to) {
       const float split = rfl_finite(l);
       rfl_check(l, along < axes && split > b->lo[along] && split < b->hi[along] && l->count < to->table);
       *b->link = l->count, node = l->words + l->count, l->count += RFL_NODE, open += 2;
-      node[0] = rfl_word(along ? split : -cosf(split)), node[3] = along;
+      node[0] = rfl_word(along ? rfl_azimuth_of(split) : -cosf(split)), node[3] = along;
       b[1] = b[0], b[0].lo[along] = b[1].hi[along] = split, b[0].link = node + 2, b[1].link = node + 1;
     }
   }

@@ -19,7 +19,7 @@ const int RFL_PROJECTED_DISK = 0, RFL_EQUAL_AREA = 1, RFL_HALF_VECTOR = 2, RFL_B
   RFL_MIRROR_VECTOR = 5, RFL_NORMAL_VECTOR = 6, RFL_SLOPE_STAR = 7;
 const uint RFL_ISOTROPIC = 0u, RFL_TWO_PLANES = 1u, RFL_ONE_PLANE = 2u, RFL_HALF_TURN = 3u;
 
-struct RflViewer { vec3 known, axis; float cos_phi, sin_phi, side, phi, albedo; };
+struct RflViewer { vec3 known, axis; float cos_phi, sin_phi, side, phi, azimuth, albedo; };
 struct RflDraw { vec3 wi; float pdf, scale; };
 struct RflCandidate { vec3 wi; float cos_i, area, majorant; };
 struct RflPoint { vec3 wi; float area; };
@@ -39,6 +39,11 @@ int rfl_find(int head, float c) {
   int i = int(RFL_WORD(int(RFL_WORD(head + 2) + entry)));
   while (rfl_float(borders + i + 1) <= c) ++i;
   return i;
+}
+// Ascends with the azimuth, to 4, and takes no arctangent.
+float rfl_azimuth(uint symmetry, vec2 w) {
+  float q = abs(w.y) / max(abs(w.x) + abs(w.y), 1e-37), upper = w.x < 0.0 ? 2.0 - q : q;
+  return symmetry == RFL_TWO_PLANES ? q : w.y < 0.0 ? 4.0 - upper : upper;
 }
 // Linear in the cosine; over the azimuth the cubic through four rows.
 float rfl_albedo(float c, float phi) {
@@ -60,7 +65,7 @@ bool rfl_view(vec3 wo, out RflViewer v) {
   vec2 turn = vec2(rfl_float(25), rfl_float(26)), inner = vec2(1.0, 0.0);
   vec2 w = vec2(wo.x * turn.x + wo.y * turn.y, wo.y * turn.x - wo.x * turn.y);
   uint symmetry = RFL_WORD(21);
-  v = RflViewer(wo, vec3(0.0), 0.0, 0.0, 1.0, 0.0, 0.0);
+  v = RflViewer(wo, vec3(0.0), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0);
   if (!(wo.z >= RFL_MIN_COS && abs(dot(wo, wo) - 1.0) <= 1e-3)) return false;
   if (symmetry != RFL_ISOTROPIC) {
     if ((symmetry == RFL_TWO_PLANES && w.x < 0.0) || (symmetry == RFL_HALF_TURN && w.y < 0.0)) {
@@ -73,6 +78,7 @@ bool rfl_view(vec3 wo, out RflViewer v) {
     }
     v.phi = sine > 0.0 ? atan(w.y, w.x) : 0.0;
     if (v.phi < 0.0) v.phi += 2.0 * RFL_PI;
+    v.azimuth = rfl_azimuth(symmetry, w);
   }
   v.axis = vec3(w, c);
   if (RFL_WORD(22) != 0u) {
@@ -90,8 +96,8 @@ int rfl_slab_at(int head, RflViewer v) {
   float c = min(v.known.z, 1.0);
   int table = int(RFL_WORD(head + 3)), at = int(RFL_WORD(head + 2));
   if (RFL_WORD(head) != 0u) return table + 5 * rfl_find(head, c);
-  while (at < table)  // a tree over -cos theta_o and phi_o
-    at = int(RFL_WORD((RFL_WORD(at + 3) == 0u ? -c : v.phi) >= rfl_float(at) ? at + 2 : at + 1));
+  while (at < table)  // a tree over -cos theta_o and rfl_azimuth
+    at = int(RFL_WORD((RFL_WORD(at + 3) == 0u ? -c : v.azimuth) >= rfl_float(at) ? at + 2 : at + 1));
   return at;
 }
 vec3 rfl_outward(RflViewer v, vec3 w) {

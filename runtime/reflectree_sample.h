@@ -29,14 +29,14 @@
 #error "reflectree_sample.h needs comparisons that see NaN; compile without -ffast-math"
 #endif
 /* ---- The array of words: its head, then tables, which are named by the number of words before them ---- */
-enum { RFL_MAGIC = 0x574c4652, RFL_VERSION = 2, RFL_LEAF = 5, RFL_SLAB = 5, RFL_NODE = 4, RFL_MAX_TRIALS = 256 };
+enum { RFL_MAGIC = 0x574c4652, RFL_VERSION = 3, RFL_LEAF = 5, RFL_SLAB = 5, RFL_NODE = 4, RFL_MAX_TRIALS = 256 };
 enum { RFL_PROJECTED_DISK, RFL_EQUAL_AREA, RFL_HALF_VECTOR, RFL_BACK_VECTOR, RFL_STRETCHED, RFL_MIRROR_VECTOR,
        RFL_NORMAL_VECTOR, RFL_SLOPE_STAR };
 enum { RFL_ISOTROPIC, RFL_TWO_PLANES, RFL_ONE_PLANE, RFL_HALF_TURN, RFL_NO_SYMMETRY };
 /* Over cosines. table: of a piece, base and slope; of a slab, where its leaves are, how many, where its nodes are,
  * the capacity of a bucket, the volume. A leaf: threshold, height, alias | x << 16, y | level_x << 16 | level_y << 24,
- * slope_x | slope_y << 8. A node: lower share, lower leaves | along x << 31. Where shift is 0, a tree over theta_o and
- * phi_o leads to the slab, from the root, `guide`: border, lower child, upper child, axis. */
+ * slope_x | slope_y << 8. A node: lower share, lower leaves | along x << 31. Where shift is 0, a tree over
+ * -cos theta_o and rfl_azimuth leads to the slab, from the root, `guide`: border, lower child, upper child, axis. */
 typedef struct { uint32_t shift, borders, guide, table; } rfl_lookup;
 /* shape: exponent or stretch; turned: the domain wants wo without a y. The albedo has rows of so many pieces over
  * phi_o, in segments: phi_o, rows per radian, the row before the first, the last row but one. */
@@ -46,7 +46,7 @@ typedef struct {
 } rfl_head;
 typedef struct { const uint32_t* words; uint32_t* owned; rfl_head h; } rfl_sampler;
 typedef struct { float x, y, z; } rfl_vec;
-typedef struct { rfl_vec known, axis; float cos_phi, sin_phi, side, phi, albedo; } rfl_viewer; /* axis: of the domain */
+typedef struct { rfl_vec known, axis; float cos_phi, sin_phi, side, phi, azimuth, albedo; } rfl_viewer; /* axis: the domain's */
 typedef struct { rfl_vec wi; float pdf, scale; } rfl_draw;                 /* scale: the weight over f */
 typedef struct { rfl_vec wi; float cos_i, area, majorant; } rfl_candidate; /* a trial of exact mode */
 typedef struct { rfl_vec wi; float area; } rfl_point;
@@ -86,6 +86,10 @@ RFL_FN float rfl_angle(float y, float x) { /* from 0 to 2 pi, by a minimax polyn
   angle = b > a ? 0.5f * rfl_pi - angle : angle, angle = x < 0 ? rfl_pi - angle : angle;
   return y < 0 && angle > 0 ? -angle + 2 * rfl_pi : angle;
 }
+RFL_FN float rfl_azimuth(uint32_t symmetry, float x, float y) { /* ascends with the azimuth, to 4: viewer_frame.hpp */
+  const float a = fabsf(x), b = fabsf(y), q = b / rfl_max(a + b, 1e-37f), upper = x < 0 ? 2 - q : q;
+  return symmetry == RFL_TWO_PLANES ? q : y < 0 ? 4 - upper : upper;
+}
 /* Linear in the cosine; over the azimuth the cubic through four rows. */
 RFL_FN float rfl_albedo(const rfl_sampler* s, float c, float phi) {
   const uint32_t *p = s->words + s->h.albedo.table + 2 * (size_t)rfl_find(s, &s->h.albedo, c), *g;
@@ -106,12 +110,14 @@ RFL_FN int rfl_view(const rfl_sampler* s, rfl_vec wo, rfl_viewer* v) {
   float a = s->h.cos_axis, b = s->h.sin_axis, x = 1, y = 0;
   rfl_vec w = rfl_turn(wo, a, -b);
   if (!(wo.z >= rfl_min_cos && fabsf(s2 + wo.z * wo.z - 1) <= 1e-3f)) return 0;
-  v->known = wo, v->side = 1, v->phi = 0;
+  v->known = wo, v->side = 1, v->phi = v->azimuth = 0;
   if (s->h.symmetry != RFL_ISOTROPIC) {
     if ((s->h.symmetry == RFL_TWO_PLANES && w.x < 0) || (s->h.symmetry == RFL_HALF_TURN && w.y < 0))
       w.x = -w.x, w.y = -w.y, a = -a, b = -b;
     if (s->h.symmetry <= RFL_ONE_PLANE && w.y < 0) w.y = -w.y, v->side = -1;
-    v->phi = rfl_angle(w.y, w.x);
+    if (s->h.symmetry == RFL_TWO_PLANES) w.x = fabsf(w.x); /* -0 is 0 */
+    if (s->h.symmetry <= RFL_HALF_TURN) w.y = fabsf(w.y);
+    v->phi = rfl_angle(w.y, w.x), v->azimuth = rfl_azimuth(s->h.symmetry, w.x, w.y);
   }
   v->axis = rfl_vec3(w.x, w.y, c);
   if (s->h.turned) x = sine > 0 ? w.x * inv : 1.f, y = v->side * (w.y * inv), v->axis = rfl_vec3(sine, 0, c);
@@ -124,7 +130,7 @@ RFL_FN rfl_vec rfl_outward(const rfl_viewer* v, rfl_vec w) {
   return rfl_turn(rfl_vec3(w.x, v->side * w.y, w.z), v->cos_phi, v->sin_phi);
 }
 RFL_FN const uint32_t* rfl_slab_at(const rfl_sampler* s, const rfl_lookup* l, const rfl_viewer* v) {
-  const float key[2] = {-rfl_min(v->known.z, 1.f), v->phi};
+  const float key[2] = {-rfl_min(v->known.z, 1.f), v->azimuth};
   uint32_t at = l->guide;
   if (l->shift) return s->words + l->table + RFL_SLAB * (size_t)rfl_find(s, l, -key[0]);
   while (at < l->table) at = s->words[at + 1 + (key[s->words[at + 3]] >= rfl_float(s->words[at]))];
