@@ -106,8 +106,12 @@ Vec2<AffineForm> RglEnclosure::unwarped(const AffineForm& theta_o, const AffineF
   const Parts of_theta(theta_o.range, int(table.theta_o_.size()),
                        [&](int i) { return double(table.theta_o_[std::size_t(i)]); });
   const Parts of_x(x.range, width, unit), of_y(y.range, height, unit);
-  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few())
-    return unwarped_range(theta_o, x.range, y.range);
+  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few()) {
+    // Where wh may be the normal its azimuth may stay unknown however small the box is. Elsewhere halving helps, and
+    // a range without slopes would mislead the choice of the axis.
+    if (x.range.lo < 1) return unwarped_range(theta_o, x.range, y.range);
+    return {any, any};
+  }
   using Where = std::array<const Part*, 3>;
   using Places = std::array<double, 3>;
   constexpr double share = 32 * u;
