@@ -61,9 +61,9 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
         subject.file_size = std::filesystem::file_size(path);
         show_info(context, "certify", subject);
         context.say("saved " + path);
-        const bool all = std::all_of(subject.data.exact.begin(), subject.data.exact.end(), [](const MajorantTree& t) {
-          return t.status == BoundStatus::certified;
-        });
+        const bool all =
+            std::all_of(subject.data.exact.begin(), subject.data.exact.end(),
+                        [](const MajorantTree& t) { return t.status == BoundStatus::certified; });
         const bool albedo = o->albedo == 0 || (subject.data.albedo.proved_error > 0 &&
                                                subject.data.albedo.proved_error <= float(o->albedo));
         return int(all && albedo ? exit_success : exit_check_failed);

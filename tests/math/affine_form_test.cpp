@@ -75,7 +75,9 @@ std::vector<Formula> formulas() {
           REFLECTREE_FORMULA(cos_sin_half(x).x * cos_sin_half(x).y)};
 }
 
-AffineForm variable(std::size_t k, RealInterval range) { return AffineForm::variable(2 * k, range.lo, range.hi); }
+AffineForm variable(std::size_t k, RealInterval range) {
+  return AffineForm::variable(2 * k, range.lo, range.hi);
+}
 
 struct Box {
   std::array<RealInterval, n> range;

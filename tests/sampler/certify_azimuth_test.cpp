@@ -74,7 +74,8 @@ double largest_share(const SamplerData& data, const AnyFamily& f, int points) {
     const bool half = packed.domain.half();
     const auto across = [&u] { return clamp(1.1f * to_unit_float(u()) - 0.05f, 0.f, 1.f); };
     const detail::PointInLeaf p = detail::point_at(leaf, half, across(), across());
-    const DomainPoint point = lift(domain_at(packed.viewer, packed.domain, in), in.wo, p.p, half && (u() & 1U));
+    const DomainPoint point =
+        lift(domain_at(packed.viewer, packed.domain, in), in.wo, p.p, half && (u() & 1U));
     const double target =
         double(packed.target(f(known_geometry(in, point.geometry, true), at)) * point.projected_area);
     largest = std::max(largest, target / double(in.albedo * p.height));

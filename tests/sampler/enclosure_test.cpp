@@ -89,8 +89,8 @@ TYPED_TEST(ModelEnclosure, KeepsWhatItSays) {
     for (const Pair& pair : test_pairs(2, bits)) {
       const auto imaged = [&](const ShadingGeometry<float>& g, float x, float y) {
         const auto image = [=](Direction w) { return Direction{x * w.x, y * w.y, w.z}; };
-        return ShadingGeometry<float>{image(g.wo), image(g.wi), image(g.wh),
-                                      g.cos_theta_o, g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
+        return ShadingGeometry<float>{image(g.wo),   image(g.wi),   image(g.wh),  g.cos_theta_o,
+                                      g.cos_theta_i, g.cos_theta_h, g.cos_theta_d};
       };
       const ShadingGeometry<float> g = shading_geometry(pair.wo, pair.wi);
       const auto value = model(g);

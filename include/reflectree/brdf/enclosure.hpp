@@ -101,8 +101,8 @@ inline AffineForm sin2_theta(const Vec3<AffineForm>& w) {
   return narrower(plain, AffineForm(1) - sqr(w.z) + slack);
 }
 
-// For ggx.hpp. Of a unit vector it is alpha^2 + (1 - alpha^2) sin^2, too: where nothing else is known of w it is no less than
-// alpha^2. The length that a half vector rounds to errs by less than 16 u, and so does this.
+// For ggx.hpp. Of a unit vector it is alpha^2 + (1 - alpha^2) sin^2, too: where nothing else is known of w it is no
+// less than alpha^2. The length that a half vector rounds to errs by less than 16 u, and so does this.
 inline AffineForm stretched_sin2_theta(const Vec3<AffineForm>& w, const AffineForm& alpha) {
   const AffineForm sin2 = sin2_theta(w), alpha2 = sqr(alpha);
   const AffineForm plain = sin2 + sqr(alpha * w.z);

@@ -200,7 +200,8 @@ std::optional<RgbT<AffineForm>> RglEnclosure::times_cosine(const ShadingGeometry
 }
 
 RgbT<AffineForm> RglEnclosure::value(const ShadingGeometry<AffineForm>& g, const AffineForm& factor) const {
-  const AffineForm sin_o = g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0 ? g.wo.x : sqrt(sin2_theta(g.wo));
+  const AffineForm sin_o =
+      g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0 ? g.wo.x : sqrt(sin2_theta(g.wo));
   const AffineForm theta_o = polar_angle(sin_o, g.cos_theta_o);
   const AffineForm sigma =
       interpolated(table_.sigma_, located(elevation_to_u(theta_o), int(table_.sigma_.size())));

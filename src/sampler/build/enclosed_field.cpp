@@ -72,8 +72,8 @@ ProofBox EnclosedField::whole(const KnownRange& known) const {
   return box;
 }
 
-AffineForm EnclosedField::value_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g,
-                                     const ViewerForms& v) const {
+AffineForm EnclosedField::value_over(const DomainPointT<AffineForm>& point,
+                                     const ShadingGeometry<AffineForm>& g, const ViewerForms& v) const {
   if (family_)
     return reduced(packed_.target, (*family_enclosure_)(g, v.parameters), channels_) * point.projected_area;
   if (point.area_by_cosine) {
@@ -85,8 +85,8 @@ AffineForm EnclosedField::value_over(const DomainPointT<AffineForm>& point, cons
 }
 
 // Of all images, whose values are about the same, what holds each.
-AffineForm EnclosedField::target_over(const DomainPointT<AffineForm>& point, const ShadingGeometry<AffineForm>& g,
-                                      const ViewerForms& v) const {
+AffineForm EnclosedField::target_over(const DomainPointT<AffineForm>& point,
+                                      const ShadingGeometry<AffineForm>& g, const ViewerForms& v) const {
   AffineForm out;
   for (std::size_t i = 0; i < images_.size(); ++i) {
     const AffineForm t = value_over(point, viewer_.for_caller(g, v, images_[i]), v);
@@ -99,7 +99,8 @@ AffineForm EnclosedField::albedo(double theta_lo, double theta_hi, const KnownRa
   return viewer_.over({AffineForm::variable(0, theta_lo, theta_hi)}, known).albedo;
 }
 
-EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const {
+EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known,
+                                  const PackedLeaf& leaf) const {
   std::array<AffineForm, 2 + max_parameters> unknown{AffineForm::variable(0, box.lo[0], box.hi[0])};
   for (std::size_t i = 3; i < axes(); ++i) unknown[i - 2] = AffineForm::variable(i, box.lo[i], box.hi[i]);
   const ViewerForms viewer = viewer_.over(unknown, known);
@@ -114,7 +115,8 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known, 
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
-  const DomainPointT<AffineForm> lifted = lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
+  const DomainPointT<AffineForm> lifted =
+      lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
   EnclosedPoint out{target_over(lifted, lifted.geometry, viewer), std::nullopt, viewer.albedo * at.height};
   if (both_sides_) {
     out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry), viewer);

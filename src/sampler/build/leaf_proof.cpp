@@ -93,9 +93,7 @@ class Proof {
     }
     return v;
   }
-  void see(const OpenBox& b, const ProofPoint& point) {
-    check_value(b.point, look_at(point));
-  }
+  void see(const OpenBox& b, const ProofPoint& point) { check_value(b.point, look_at(point)); }
 
   // Values at the middle, and at the corner to which the difference rises.
   void look_into(const OpenBox& b) {
