@@ -73,6 +73,26 @@ class GridPieces {
         },
         share);
   }
+  // The same where there may be many, on axes that are not periodic: then the range of all nodes.
+  template <class Value>
+  AffineForm interpolated_or_ranged(const Value& value, double share) const {
+    int volume = 1;
+    for (std::size_t a = 0; a < d; ++a) volume *= last_[a] - first_[a] + 1;
+    if (are_few() && volume < 500) return interpolated(value, share);
+    RealInterval range{detail::infinity, -detail::infinity};
+    Node node = first_;
+    for (bool more = true; more;) {
+      const auto v = double(value(node));
+      range = hull(range, RealInterval(v, v));
+      more = false;
+      for (std::size_t a = d; a-- > 0 && !more;) {
+        more = ++node[a] <= last_[a];
+        if (!more) node[a] = first_[a];
+      }
+    }
+    const double slack = share * range.magnitude();
+    return AffineForm::anything_in({range.lo - slack, range.hi + slack});
+  }
 
  private:
   struct Place {

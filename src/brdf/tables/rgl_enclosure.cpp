@@ -164,10 +164,6 @@ RgbT<AffineForm> RglEnclosure::colour(const AffineForm& theta_o, const Vec2<Affi
   const Pieces pieces({of_theta, GridAxis{width}, GridAxis{height}},
                       {theta_o, located(at.x, width), located(at.y, height)});
   using Node = Pieces::Node;
-  const Node &first = pieces.first(), &last = pieces.last();
-  int volume = 1;
-  for (std::size_t a = 0; a < 3; ++a) volume *= last[a] - first[a] + 1;
-  const bool few = pieces.are_few() && volume < 500;
   const auto of = [&](int channel) {
     const auto value = [&, channel](const Node& n) {
       const int pair = std::min(n[0], nodes - 2);
@@ -175,17 +171,7 @@ RgbT<AffineForm> RglEnclosure::colour(const AffineForm& theta_o, const Vec2<Affi
       return table_.colour_[row * std::size_t(width) + std::size_t(n[1])].rgb[n[0] - pair][channel];
     };
     constexpr double share = 32 * u;
-    if (few) return pieces.interpolated(value, share);
-    RealInterval range{detail::infinity, -detail::infinity};
-    for (int i = first[0]; i <= last[0]; ++i) {
-      for (int j = first[1]; j <= last[1]; ++j) {
-        for (int k = first[2]; k <= last[2]; ++k) {
-          const auto v = double(value({i, j, k}));
-          range = hull(range, RealInterval(v, v));
-        }
-      }
-    }
-    return widened(AffineForm::anything_in(range), share);
+    return pieces.interpolated_or_ranged(value, share);
   };
   return {of(0), of(1), of(2)};
 }

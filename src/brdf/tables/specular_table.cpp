@@ -117,21 +117,7 @@ class SpecularEnclosure final : public BrdfEnclosure {
       return channel_value(table_.values[row * axes.radial.size() + std::size_t(i[2])], c);
     };
     constexpr double share = 0x1p-19;
-    const auto &first = pieces.first(), &last = pieces.last();
-    int volume = 1;
-    for (std::size_t a = 0; a < 3; ++a) volume *= last[a] - first[a] + 1;
-    const AffineForm zero(0.f);
-    if (pieces.are_few() && volume < 500) return max(pieces.interpolated(value, share), zero);
-    RealInterval range{detail::infinity, -detail::infinity};
-    for (int i = first[0]; i <= last[0]; ++i) {
-      for (int j = first[1]; j <= last[1]; ++j) {
-        for (int k = first[2]; k <= last[2]; ++k) {
-          const auto v = double(value({i, j, k}));
-          range = hull(range, RealInterval(v, v));
-        }
-      }
-    }
-    return max(widened(AffineForm::anything_in(range), share), zero);
+    return max(pieces.interpolated_or_ranged(value, share), AffineForm(0.f));
   }
 
   SpecularTable<Value> table_;
