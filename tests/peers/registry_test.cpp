@@ -70,7 +70,7 @@ TEST_P(EachSampler, IsWhatItsRowSays) { judge(*GetParam(), "plastic:kd=0.5,alpha
 // sampler_anisotropic.
 class EachOther : public EachSampler {};
 TEST_P(EachOther, TakesAnisotropicFunctions) {
-  judge(*GetParam(), "plastic:alpha_x=0.4,alpha_y=0.7,phi_deg=20", 2);
+  judge(*GetParam(), "ggx:alpha_x=0.4,alpha_y=0.7,phi_deg=20", 2);
 }
 
 std::vector<const SamplerInfo*> all_but(std::initializer_list<std::string_view> names) {

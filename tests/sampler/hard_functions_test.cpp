@@ -215,6 +215,7 @@ struct Rpv {
 TEST(Rim, ADomainThatDoesNotFitIsRefused) {
   BuildOptions options;
   options.domain = Domain{DomainKind::projected_disk, Symmetry::mirror, 0};
+  options.max_evaluations = 30'000'000;
   EXPECT_THROW(build(AnyBrdf(Rpv{}), options), Error);
   EXPECT_NO_THROW(build(AnyBrdf(Lopsided{0}), options));
 }

@@ -130,7 +130,7 @@ TEST(Needles, AtRandomPlacesAreRefused) {
     return 0.05f + 20 * std::exp(-d * d / 1e-5f);
   };
   BuildOptions options;
-  options.max_evaluations = 30'000'000;
+  options.max_evaluations = 20'000'000;
   try {
     const SamplerData data = build(AnyBrdf(f), options);
     EXPECT_FALSE(data.report.notes.empty());

@@ -131,14 +131,12 @@ REFLECTREE_INLINE void sample_one_shot_blocks(const OneShotSampler<F>& sampler, 
   TrialBlock block(sampler.evaluates_turned(), !packed.viewer.frame.isotropic());
   BlockValues<F> values(sampler.brdf(), packed.target);
   const auto no_sample = [&](std::size_t i) { store_no_sample(values.zero(), out[i]); };
-  const Domain member = domain_of_all(sampler.brdf(), packed);
-  with_known_kind(member, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-    for (std::size_t i = 0; i < n;) {
-      block.count = 0;
-      add(domain, i, block, no_sample);
-      finish_one_shot<across_x>(domain, block, values, out);
-    }
-  });
+  const Domain domain = domain_of_all(sampler.brdf(), packed);
+  for (std::size_t i = 0; i < n;) {
+    block.count = 0;
+    add(domain, i, block, no_sample);
+    finish_one_shot<across_x>(domain, block, values, out);
+  }
 }
 
 }  // namespace detail
@@ -186,57 +184,55 @@ void sample_batch(const ExactSampler<F>& sampler, std::span<const Direction> wo,
   };
   Pending pending[detail::block_size];
   detail::ViewerStream viewers(packed, wo, true);
-  with_known_kind(
-      detail::domain_of_all(sampler.brdf(), packed), [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < wo.size() || count > 0;) {
-          const auto fill = [&](const auto& find) REFLECTREE_INLINE_LAMBDA {
-            for (; i < wo.size() && count < detail::block_size; ++i) {
-              Pending& p = pending[count];
-              if (!find(i, p.in)) {
-                detail::store_no_sample(values.zero(), out[i]);
-                continue;
-              }
-              p.slab = &detail::slab_of<F>(packed.exact, p.in);
-              p.i = i;
-              p.trials = 0;
-              ++count;
-            }
-          };
-          detail::with_viewers(sampler.brdf(), packed, wo, viewers, fill);
-          b.count = 0;
-          for (std::size_t k = 0; k < count; ++k) {
-            const Pending& p = pending[k];
-            const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
-            b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
-            b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
-          }
-          detail::compute_points<detail::AcrossX::place>(domain, b, values);
-          // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
-          for (std::size_t k = 0; k < count; k += lane_count) {
-            const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
-            b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
-            b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
-            b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
-            b.set(Field::scale, k, a / t);
-          }
-          std::size_t rejected = 0;
-          for (std::size_t k = 0; k < count; ++k) {
-            const float target = b.at[Field::target][k];
-            const bool accepted = b.at[Field::uniform][k] < target;
-            stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
-            if (accepted) {
-              detail::store_sample(b, values, k, out[b.index[k]]);
-            } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
-              pending[rejected++] = pending[k];
-            } else {
-              stats.exhausted();
-              detail::store_no_sample(values.zero(), out[b.index[k]]);
-            }
-          }
-          count = rejected;
+  const Domain domain = detail::domain_of_all(sampler.brdf(), packed);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < wo.size() || count > 0;) {
+    const auto fill = [&](const auto& find) REFLECTREE_INLINE_LAMBDA {
+      for (; i < wo.size() && count < detail::block_size; ++i) {
+        Pending& p = pending[count];
+        if (!find(i, p.in)) {
+          detail::store_no_sample(values.zero(), out[i]);
+          continue;
         }
-      });
+        p.slab = &detail::slab_of<F>(packed.exact, p.in);
+        p.i = i;
+        p.trials = 0;
+        ++count;
+      }
+    };
+    detail::with_viewers(sampler.brdf(), packed, wo, viewers, fill);
+    b.count = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Pending& p = pending[k];
+      const PackedLeaf* leaves = packed.exact.leaves.data() + p.slab->first;
+      b.add(p.i, p.in, detail::choose_leaf(*p.slab, leaves, detail::bits64(u)), domain.half(), u);
+      b.at[Field::uniform][k] = float(u()) * 0x1p-32f;
+    }
+    detail::compute_points<detail::AcrossX::place>(domain, b, values);
+    // pdf = t cos_i / a; weight = f_cos / pdf = a f / t, channel by channel: cos_i cancels.
+    for (std::size_t k = 0; k < count; k += lane_count) {
+      const Lanes t = values.target(k), a = b.lanes(Field::albedo, k);
+      b.set(Field::target, k, t * b.lanes(Field::projected_area, k));
+      b.set(Field::uniform, k, b.lanes(Field::uniform, k) * (b.lanes(Field::majorant, k) * a));
+      b.set(Field::pdf, k, t * b.lanes(Field::wi_z, k) / a);
+      b.set(Field::scale, k, a / t);
+    }
+    std::size_t rejected = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const float target = b.at[Field::target][k];
+      const bool accepted = b.at[Field::uniform][k] < target;
+      stats.trial(accepted, target / pending[k].in.albedo, b.at[Field::majorant][k]);
+      if (accepted) {
+        detail::store_sample(b, values, k, out[b.index[k]]);
+      } else if (++pending[k].trials < ExactSampler<F>::max_trials) {
+        pending[rejected++] = pending[k];
+      } else {
+        stats.exhausted();
+        detail::store_no_sample(values.zero(), out[b.index[k]]);
+      }
+    }
+    count = rejected;
+  }
 }
 
 }  // namespace reflectree

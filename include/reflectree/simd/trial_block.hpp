@@ -2,10 +2,10 @@
 // A block of trials, field by field: chosen one by one, computed in lanes.
 #pragma once
 
+#include "reflectree/math/lanes.hpp"
 #include "reflectree/sampler/known/incidence.hpp"
 #include "reflectree/sampler/square/domain_map.hpp"
 #include "reflectree/sampler/square/packed_leaf.hpp"
-#include "reflectree/math/lanes.hpp"
 
 namespace reflectree::detail {
 
@@ -102,45 +102,48 @@ struct alignas(64) TrialBlock {
 // Whether across_x is a uniform still to be taken through the inverse CDF, or the place itself.
 enum class AcrossX { uniform, place };
 
-// Computes points, directions and what f says there (block_values.hpp).
+// Computes points, directions and what f says there (block_values.hpp). The kind of the domain is looked at
+// once per block: around the whole of a batch it would make six copies of all that chooses.
 template <AcrossX across_x, class Values>
-REFLECTREE_INLINE void compute_points(const Domain& domain, TrialBlock& b, Values& values) {
+REFLECTREE_INLINE void compute_points(const Domain& any_domain, TrialBlock& b, Values& values) {
   using Field = TrialBlock::Field;
   b.pad();
-  for (std::size_t k = 0; k < b.count; k += lane_count) {
-    const auto lanes = [&b, k](Field field) { return b.lanes(field, k); };
-    const LeafCell<Lanes> cell{lanes(Field::x),      lanes(Field::y),       lanes(Field::width),
-                               lanes(Field::length), lanes(Field::slope_x), lanes(Field::slope_y),
-                               lanes(Field::height)};
-    Lanes tx = lanes(Field::across_x);
-    if constexpr (across_x == AcrossX::uniform) tx = sample_linear(cell.slope_x, tx);
-    const PointInLeafT<Lanes> at = point_at(cell, tx, sample_linear(cell.slope_y, lanes(Field::across_y)));
-    const bool surface = b.anisotropic && domain.follows_surface();
-    const Vec3<Lanes> wo{lanes(Field::wo_x), surface ? lanes(Field::wo_y) : Lanes(0),
-                         lanes(Field::cos_theta_o)};
-    const DomainPointT<Lanes> point =
-        lift_point(domain, wo, Vec2<Lanes>{at.p.x, flip_sign(at.p.y, lanes(Field::turn))});
-    const Vec3<Lanes>& wi = point.geometry.wi;
-    const Lanes cos_phi = lanes(Field::cos_phi), sin_phi = lanes(Field::sin_phi);
-    const auto turn_back = [&](const Vec3<Lanes>& w) {
-      const Lanes y = b.anisotropic ? flip_sign(w.y, lanes(Field::side)) : w.y;
-      return Vec3<Lanes>{w.x * cos_phi - y * sin_phi, w.x * sin_phi + y * cos_phi, w.z};
-    };
-    const Vec3<Lanes> drawn = turn_back(wi);
-    b.set(Field::wi_x, k, drawn.x);
-    b.set(Field::wi_y, k, drawn.y);
-    b.set(Field::wi_z, k, drawn.z);
-    b.set(Field::projected_area, k, point.projected_area);
-    b.set(Field::majorant, k, at.height);
-    if (b.keep_known) {
-      ShadingGeometry<Lanes> g = point.geometry;
-      g.wo = {lanes(Field::known_x), lanes(Field::known_y), lanes(Field::known_z)};
-      g.wi = drawn, g.wh = turn_back(g.wh);
-      values.evaluate(k, g);
-    } else {
-      values.evaluate(k, point.geometry);
+  with_known_kind(any_domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
+    for (std::size_t k = 0; k < b.count; k += lane_count) {
+      const auto lanes = [&b, k](Field field) { return b.lanes(field, k); };
+      const LeafCell<Lanes> cell{lanes(Field::x),      lanes(Field::y),       lanes(Field::width),
+                                 lanes(Field::length), lanes(Field::slope_x), lanes(Field::slope_y),
+                                 lanes(Field::height)};
+      Lanes tx = lanes(Field::across_x);
+      if constexpr (across_x == AcrossX::uniform) tx = sample_linear(cell.slope_x, tx);
+      const PointInLeafT<Lanes> at = point_at(cell, tx, sample_linear(cell.slope_y, lanes(Field::across_y)));
+      const bool surface = b.anisotropic && domain.follows_surface();
+      const Vec3<Lanes> wo{lanes(Field::wo_x), surface ? lanes(Field::wo_y) : Lanes(0),
+                           lanes(Field::cos_theta_o)};
+      const DomainPointT<Lanes> point =
+          lift_point(domain, wo, Vec2<Lanes>{at.p.x, flip_sign(at.p.y, lanes(Field::turn))});
+      const Vec3<Lanes>& wi = point.geometry.wi;
+      const Lanes cos_phi = lanes(Field::cos_phi), sin_phi = lanes(Field::sin_phi);
+      const auto turn_back = [&](const Vec3<Lanes>& w) {
+        const Lanes y = b.anisotropic ? flip_sign(w.y, lanes(Field::side)) : w.y;
+        return Vec3<Lanes>{w.x * cos_phi - y * sin_phi, w.x * sin_phi + y * cos_phi, w.z};
+      };
+      const Vec3<Lanes> drawn = turn_back(wi);
+      b.set(Field::wi_x, k, drawn.x);
+      b.set(Field::wi_y, k, drawn.y);
+      b.set(Field::wi_z, k, drawn.z);
+      b.set(Field::projected_area, k, point.projected_area);
+      b.set(Field::majorant, k, at.height);
+      if (b.keep_known) {
+        ShadingGeometry<Lanes> g = point.geometry;
+        g.wo = {lanes(Field::known_x), lanes(Field::known_y), lanes(Field::known_z)};
+        g.wi = drawn, g.wh = turn_back(g.wh);
+        values.evaluate(k, g);
+      } else {
+        values.evaluate(k, point.geometry);
+      }
     }
-  }
+  });
   values.finish(b.count);
 }
 

@@ -51,13 +51,11 @@ class TrialRound {
 
   template <AcrossX across_x>
   void compute() {
-    with_known_kind(packed_.domain, [&](const Domain& domain) REFLECTREE_INLINE_LAMBDA {
-      first_ = 0;
-      for (std::size_t b = 0; b <= last_; ++b) {
-        compute_points<across_x>(domain, blocks_[b], *this);
-        first_ += places_of(blocks_[b]);
-      }
-    });
+    first_ = 0;
+    for (std::size_t b = 0; b <= last_; ++b) {
+      compute_points<across_x>(packed_.domain, blocks_[b], *this);
+      first_ += places_of(blocks_[b]);
+    }
     if (!lanes_) f_.eval({geometry_.data(), first_}, {values_.data(), first_ * channels_});
   }
   // visit(block, j, k) for every trial, in the order in which they were added.
