@@ -8,6 +8,7 @@ namespace reflectree {
 TargetFunction target_function(AnyBrdf f, Target target) {
   TargetFunction result;
   result.concurrent = f.traits().concurrent;
+  result.patches = f.traits().patches;
   result.eval = [f = std::move(f), target](Vec3<double> wo, std::span<const Vec3<double>> wi,
                                            std::span<double> t) {
     const auto channels = std::size_t(f.channels());

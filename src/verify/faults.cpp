@@ -29,6 +29,7 @@ ErasedSampler swapped_pdf(ErasedSampler sampler) {
 }
 
 TargetFunction swapped(TargetFunction f) {
+  f.patches.clear();
   f.eval = [inner = f.eval](Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t) {
     for (std::size_t i = 0; i < wi.size(); ++i) {
       t[i] = 0;

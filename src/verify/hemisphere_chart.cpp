@@ -30,7 +30,18 @@ HemisphereChart::HemisphereChart(Vec3<double> centre) {
   grade_hi_ = folds_of(std::atan2(std::max(centre.z, 0.), r), finest_theta);
 }
 
+HemisphereChart HemisphereChart::projected_disk() {
+  HemisphereChart chart({0, 0, 1});
+  chart.disk_ = true;
+  return chart;
+}
+
 HemisphereChart::Point HemisphereChart::direction(Vec2<double> p) const {
+  if (disk_) {
+    const double phi = half_pi * p.x, sin2 = 0.5 * p.y, r = std::sqrt(sin2);
+    const double z = std::max(std::sqrt(1 - sin2), 1e-160);
+    return {{r * std::cos(phi), r * std::sin(phi), z}, pi_v<double> / (8 * z)};
+  }
   const int quarter = std::clamp(int(p.x), 0, 3);
   const bool opposite = quarter == 1 || quarter == 2, back = quarter == 1 || quarter == 3;
   const double v = back ? quarter + 1 - p.x : p.x - quarter;
@@ -50,6 +61,10 @@ HemisphereChart::Point HemisphereChart::direction(Vec2<double> p) const {
 }
 
 Vec2<double> HemisphereChart::coordinates(Vec3<double> w) const {
+  if (disk_) {
+    const double quarters = std::atan2(w.y, w.x) / half_pi;
+    return {quarters < 0 ? quarters + 4 : quarters, 2 * (1 - sqr(w.z))};
+  }
   const double along = w.x * azimuth_.x + w.y * azimuth_.y, across = w.y * azimuth_.x - w.x * azimuth_.y;
   const double v = grade(std::atan2(std::abs(across), std::abs(along)), grade_phi_, finest_phi);
   const double x = across >= 0 ? (along >= 0 ? v : 2 - v) : (along >= 0 ? 4 - v : 2 + v);

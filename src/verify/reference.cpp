@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/verify/reference.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "reflectree/math/frame.hpp"
@@ -11,6 +13,7 @@ namespace reflectree {
 namespace {
 
 constexpr int start_cells_x = 32, start_cells_y = 16;  // 8 per grading of 15 to 19 e-folds
+constexpr int patch_cells = 2;
 
 Vec3<double> widen(Direction w) { return normalize(Vec3<double>{w.x, w.y, w.z}); }
 
@@ -91,9 +94,26 @@ Highest climbed(const TargetFunction& f, Vec3<double> wo, Highest best) {
   return best;
 }
 
+CubatureResult over_patches(const TargetFunction& f, Vec3<double> wo, std::size_t max_evaluations,
+                            CubatureOptions options) {
+  const HemisphereChart chart = HemisphereChart::projected_disk();
+  const Integrand integrand = chart_integrand(f, wo, chart);
+  const std::vector<CubatureBox> parts = chart_parts(f);
+  options.max_evaluations = max_evaluations / parts.size();
+  options.cells_x = options.cells_y = patch_cells;
+  CubatureResult sum{0, 0, 0, true};
+  for (const CubatureBox& part : parts) {
+    const CubatureResult r = cubature(integrand, part, options);
+    sum.value += r.value, sum.error += r.error, sum.evaluations += r.evaluations;
+    sum.converged = sum.converged && r.converged;
+  }
+  return sum;
+}
+
 }  // namespace
 
 HemisphereChart choose_chart(const TargetFunction& f, Vec3<double> wo) {
+  if (!f.patches.empty()) return HemisphereChart::projected_disk();
   const HemisphereChart mirror({-wo.x, -wo.y, wo.z});
   std::vector<Vec3<double>> points;
   append_grid(mirror, points);
@@ -106,6 +126,33 @@ HemisphereChart choose_chart(const TargetFunction& f, Vec3<double> wo) {
   };
   const Highest seen = of(0, grid), peak = climbed(f, wo, of(grid, points.size() - grid));
   return peak.value > 1.5 * seen.value ? HemisphereChart(peak.w) : mirror;
+}
+
+std::vector<CubatureBox> chart_parts(const TargetFunction& f) {
+  if (f.patches.empty()) return {HemisphereChart::domain};
+  constexpr double narrowest = 1e-6;  // of the chart: what is narrower is a border told of twice
+  std::vector<CubatureBox> parts;
+  double y0 = 0;
+  for (const PatchBand& band : f.patches) {
+    const bool last = &band == &f.patches.back();
+    const double y1 = last ? 2 : 2 * sqr(std::sin(double(band.theta_i_end)));
+    if (!(y1 > y0 + narrowest)) continue;
+    std::vector<double> edges{4};
+    for (const float phi : band.phi_i) {
+      const double quarters = std::fmod(double(phi) / (0.5 * pi_v<double>), 4);
+      edges.push_back(quarters < 0 ? quarters + 4 : quarters);
+    }
+    std::sort(edges.begin(), edges.end());
+    double x0 = 0;
+    for (const double edge : edges) {
+      const double x1 = edge > 4 - narrowest ? 4 : edge;
+      if (!(x1 > x0 + narrowest)) continue;
+      parts.push_back({x0, x1, y0, y1});
+      x0 = x1;
+    }
+    y0 = y1;
+  }
+  return parts;
 }
 
 Integrand chart_integrand(const TargetFunction& f, Vec3<double> wo, const HemisphereChart& chart) {
@@ -134,10 +181,11 @@ Integrand chart_integrand(const ErasedSampler& sampler, Direction wo, const Hemi
 CubatureResult reference_albedo(const TargetFunction& f, Direction wo, const ReferenceOptions& options) {
   const Vec3<double> w = widen(wo);
   if (!(w.z > 0)) return {0, 0, 0, true};
-  const HemisphereChart chart =
-      options.mirror_symmetric ? HemisphereChart({-w.x, -w.y, w.z}) : choose_chart(f, w);
   CubatureOptions cubature_options;
   cubature_options.relative_tolerance = options.relative_tolerance;
+  if (!f.patches.empty()) return over_patches(f, w, options.max_evaluations, cubature_options);
+  const HemisphereChart chart =
+      options.mirror_symmetric ? HemisphereChart({-w.x, -w.y, w.z}) : choose_chart(f, w);
   cubature_options.max_evaluations = options.max_evaluations;
   const int finer = f.concurrent ? 1 : 2;  // where a call is dear, more in the first one
   cubature_options.cells_x = finer * start_cells_x;

@@ -68,6 +68,7 @@ void channel_values(const AnyBrdf& f, Vec3<double> wo, std::span<const Vec3<doub
 TargetFunction combined_channels(AnyBrdf f, std::vector<double> coefficients) {
   TargetFunction result;
   result.concurrent = f.traits().concurrent;
+  result.patches = f.traits().patches;
   result.eval = [f = std::move(f), coefficients = std::move(coefficients)](
                     Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t) {
     const auto channels = std::size_t(f.channels());

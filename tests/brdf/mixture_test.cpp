@@ -74,6 +74,30 @@ TEST(Mixture, IsZeroBelowTheSurface) {
   EXPECT_EQ(v, Rgb{});
 }
 
+// Azimuths of viewers, in bands of elevations.
+struct Banded : Grey {
+  std::vector<AzimuthKnots> bands;
+  bool isotropic = false;
+  BrdfTraits traits() const {
+    BrdfTraits t = Grey::traits();
+    t.phi_o_knots = bands, t.isotropic = isotropic;
+    return t;
+  }
+};
+TEST(Mixture, UnitesAzimuthsBandByBand) {
+  const Banded a{{}, {{0.5f, {1}}, {pi / 2, {2, 3}}}}, b{{}, {{0.8f, {4}}}};
+  const std::vector<AzimuthKnots> sum = mixture({{1, a}, {1, Lambert{}}, {1, b}}).traits().phi_o_knots;
+  ASSERT_EQ(sum.size(), 3U);
+  EXPECT_EQ(sum[0].theta_o_end, 0.5f);
+  EXPECT_EQ(sum[0].phi_o, (std::vector<float>{1, 4}));
+  EXPECT_EQ(sum[1].theta_o_end, 0.8f);
+  EXPECT_EQ(sum[1].phi_o, (std::vector<float>{2, 3, 4}));
+  EXPECT_EQ(sum[2].phi_o, (std::vector<float>{2, 3}));
+  Banded same_all_round = a;
+  same_all_round.isotropic = true;  // its azimuths are no borders
+  EXPECT_TRUE(mixture({{1, same_all_round}, {1, Five{}}}).traits().phi_o_knots.empty());
+}
+
 TEST(Mixture, CombinesTraits) {
   const AnyBrdf any = mixture({{0.5f, Grey{}}, {1, Five{}}});
   EXPECT_EQ(any.channels(), 5);

@@ -134,6 +134,35 @@ TEST(ViewerSteps, PatchesOfViewersAreExact) {
   }
 }
 
+// Azimuths go round at a border of patches: three of them in a ring of viewers meet at azimuth 0.
+TEST(ViewerSteps, PatchesThatMeetWhereAzimuthsGoRound) {
+  KlemsTable table;
+  table.incident = KlemsBasis({0, 0.6, pi_v<double> / 2}, {1, 3});
+  table.exiting = KlemsBasis({0, 0.8, pi_v<double> / 2}, {1, 4});
+  Pcg32 u(6);
+  for (int i = 0; i < 4 * 5; ++i) table.values.push_back(0.02f + sqr(to_unit_float(u())));
+  const AnyBrdf f = table;
+  const SamplerData data = build(f);
+  EXPECT_LE(data.report.expected_trials, 1.25f);
+  EXPECT_EQ(data.report.overshoot_mass, 0);
+  const auto s = make_sampler(f, data);
+  for (const double phi : {1e-4, 0.1, 6.1, 6.2831}) {
+    const Direction wo = wo_at(60, phi);
+    EXPECT_NEAR(double(s.exact.albedo(wo)) / table.traits().albedo(wo), 1, 1e-5) << phi;
+  }
+}
+
+// The builder's pairs stand at azimuth 0. Beside a step there f takes on all of its values, and turns show nothing.
+TEST(ViewerSteps, AStepAtAzimuthZeroIsSeen) {
+  const AnyBrdf f = [](Direction wo, Direction) { return wo.y > 0 ? 0.3f : 0.1f; };
+  const SamplerData data = build(f);
+  EXPECT_FALSE(data.frame.isotropic());
+  EXPECT_LE(data.report.expected_trials, 1.25f);
+  const auto s = make_sampler(f, data);
+  for (const double phi : {0.1, 3., 3.3, 6.1})
+    EXPECT_NEAR(double(s.exact.albedo(wo_at(50, phi))) / pi_v<double>, phi < 3.14 ? 0.3 : 0.1, 1e-4) << phi;
+}
+
 // A few narrow patches hold most of the light: between the points of a grid they hide.
 KlemsTable narrow_patches() {
   KlemsTable table;

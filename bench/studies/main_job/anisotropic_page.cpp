@@ -82,8 +82,7 @@ std::string anisotropic_page(const std::vector<Measurement>& all, const StudyOpt
   out +=
       "build: processor seconds of all threads. trials: worst and mean of the viewers. albedo: the relative "
       "error that the table states, and the largest that cubature found; tables that tell their albedo "
-      "(Zemax, "
-      "Klems) are judged to 1e-3, which is what this cubature sees of steps. variance: one-shot, relative, "
+      "(Zemax) are judged to 1e-3, which is what this cubature sees of kinks. variance: one-shot, relative, "
       "median and worst at 0 to 80 degrees. p: the least of the tests of exact mode, and of one-shot mode "
       "against its own density. overshoot: its mass as the trials estimate it, and the 95 % bound; attack: "
       "the largest ratio to a bound that a search found. dead: share of one-shot samples where the function "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bins of nearly equal probability over the hemisphere, from cubature alone: a k-d tree over the chart,
-// halved at the median mass, then the mass of every bin by a cubature of its own.
+// halved at the median mass, then the mass of every bin by a cubature of its own. Where f tells of patches over
+// which it is constant, no bin reaches over the border of one: each is a patch, or a part of a bright one.
 #pragma once
 
 #include <optional>
@@ -25,11 +26,14 @@ struct Bins {
   double total = 0;          // their sum
   double worst_error = 0;    // largest relative error bound among them
 
+  bool patches = false;  // the bins lie in patches of f
+
+  // Of a bin where f is 0 the one beside it where rounding alone can have led there.
   std::size_t find(Direction wi) const;
 };
 
 struct BinOptions {
-  int count = 400;
+  int count = 400;          // about, where f tells of patches
   double tolerance = 3e-4;  // relative, of each mass; biases chi-square by less than samples * tolerance^2
   std::optional<Vec3<double>> centre = {};  // of the chart; default: where a search finds t cos_i highest
 };

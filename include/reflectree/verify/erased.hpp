@@ -17,6 +17,9 @@ namespace reflectree {
 struct TargetFunction {
   std::function<void(Vec3<double> wo, std::span<const Vec3<double>> wi, std::span<double> t)> eval;
   bool concurrent = true;
+  // Patches of wi over which t is constant, as f tells (BrdfTraits::patches): cubatures begin with them, and go
+  // on halving where f is not what it told. Empty: none.
+  std::vector<PatchBand> patches = {};
 };
 
 // By the referee's own definition of the target, in double (reference_target.hpp).

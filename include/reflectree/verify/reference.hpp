@@ -17,13 +17,16 @@ struct ReferenceOptions {
 };
 
 // A chart about the mirror direction of wo, or about the highest point of t cos_i where a search finds
-// one that such a chart would not resolve.
+// one that such a chart would not resolve. Of functions that tell of patches: the projected disk.
 HemisphereChart choose_chart(const TargetFunction& f, Vec3<double> wo);
 
 // t cos_i d(solid angle) in coordinates of the chart. Keeps references.
 Integrand chart_integrand(const TargetFunction& f, Vec3<double> wo, const HemisphereChart& chart);
 // A sampler's density likewise, evaluated at float directions.
 Integrand chart_integrand(const ErasedSampler& sampler, Direction wo, const HemisphereChart& chart);
+
+// Where cubatures over that chart begin: the patches of f in rows from the normal outwards, or else the whole.
+std::vector<CubatureBox> chart_parts(const TargetFunction& f);
 
 // a(wo) = integral of t cos_i, with an estimated error bound.
 CubatureResult reference_albedo(const TargetFunction& f, Direction wo, const ReferenceOptions& options = {});

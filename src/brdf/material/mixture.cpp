@@ -111,6 +111,30 @@ std::vector<float> united(const std::vector<float>& a, const std::vector<float>&
   return sum;
 }
 
+// Bands of elevations with the azimuths that either tells there; what an isotropic term tells is no border.
+std::vector<AzimuthKnots> united_azimuths(const BrdfTraits& a, const BrdfTraits& b) {
+  std::vector<AzimuthKnots> sum;
+  std::vector<float> ends;
+  for (const BrdfTraits* traits : {&a, &b}) {
+    for (const AzimuthKnots& band : traits->phi_o_knots) {
+      if (!traits->isotropic) ends.push_back(band.theta_o_end);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (const float end : ends) {
+    AzimuthKnots& united = sum.emplace_back(AzimuthKnots{end, {}});
+    for (const BrdfTraits* traits : {&a, &b}) {
+      const auto& bands = traits->phi_o_knots;
+      const auto band = std::find_if(bands.begin(), bands.end(),
+                                     [end](const AzimuthKnots& k) { return k.theta_o_end >= end; });
+      if (!traits->isotropic && band != bands.end())
+        united.phi_o.insert(united.phi_o.end(), band->phi_o.begin(), band->phi_o.end());
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 BrdfTraits combined(const BrdfTraits& a, const BrdfTraits& b) {
@@ -126,6 +150,7 @@ BrdfTraits combined(const BrdfTraits& a, const BrdfTraits& b) {
   sum.concurrent = a.concurrent && b.concurrent;
   sum.theta_o_knots = united(a.theta_o_knots, b.theta_o_knots);
   sum.theta_d_knots = united(a.theta_d_knots, b.theta_d_knots);
+  sum.phi_o_knots = united_azimuths(a, b);
   if (a.sharp || b.sharp) {
     sum.sharp = [a = a.sharp, b = b.sharp](Direction wo) {
       std::vector<SharpLobe> lobes = a ? a(wo) : std::vector<SharpLobe>();

@@ -215,8 +215,12 @@ bool Survey::at_jump(Direction wo) const {
   }
   if (jumps->phi_o.empty()) return false;
   const float phi = azimuth_of(wo), narrow = 4e-6f + 4e-7f / sin(max(theta, 1e-3f));
-  return std::any_of(jumps->phi_o.begin(), jumps->phi_o.end(),
-                     [&](float jump) { return abs(phi - jump) < narrow; });
+  const float span = azimuth_span(field.frame.symmetry);
+  const float around = is_mirrored(field.frame.symmetry) ? 2 * span : span;
+  return std::any_of(jumps->phi_o.begin(), jumps->phi_o.end(), [&](float jump) {
+    const float away = abs(phi - jump);
+    return min(away, around - away) < narrow;
+  });
 }
 
 void eval_in_parallel(const Field& field, const Host& host, Effort& effort,

@@ -57,6 +57,13 @@ std::vector<float> told_azimuths(const Field& field) {
   return all;
 }
 
+bool leaps_at_ends(const Field& field) {
+  if (field.frame.isotropic() || is_mirrored(field.frame.symmetry)) return false;  // both sides are alike
+  const float span = azimuth_span(field.frame.symmetry);
+  const std::vector<float> told = told_azimuths(field);
+  return std::any_of(told.begin(), told.end(), [span](float phi) { return min(phi, span - phi) < 1e-4f; });
+}
+
 std::vector<float> azimuth_borders(const Field& field, const Jumps* jumps, float theta_lo, float theta_hi) {
   if (field.frame.isotropic()) return {0, 0};
   constexpr float same = 1e-4f;

@@ -155,6 +155,23 @@ bool on_patch_border(std::span<const PatchCell> cells, Vec2<float> p) {
   return !cells.empty();
 }
 
+std::vector<double> integrals_over_patches(const Field& field, std::span<const Viewer> viewers) {
+  const Box root = box_of({}, field.domain);
+  std::vector<double> integrals;
+  for (const Viewer& viewer : viewers) {
+    std::vector<FieldPoint> middles;
+    for (const PatchCell& c : field.patches)
+      middles.push_back(field_point(viewer, {linear_mix(0.5f, c.x0, c.x1), linear_mix(0.5f, c.y0, c.y1)}));
+    std::vector<FieldValue> values(middles.size());
+    field.eval(middles, values);
+    double sum = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      sum += double(share_of(root, field.patches[i])) * double(values[i].mean);
+    integrals.push_back(sum);
+  }
+  return integrals;
+}
+
 SlabPatches patches_of(const Field& field, std::span<const View> views) {
   std::vector<FieldPoint> points;
   for (const PatchCell& cell : field.patches) {

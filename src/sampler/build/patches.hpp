@@ -17,6 +17,7 @@ struct Field;
 struct Leaf;
 struct Slab;
 struct View;
+struct Viewer;
 
 // A rectangle of the square that lies in one patch.
 struct PatchCell {
@@ -30,6 +31,9 @@ std::vector<PatchCell> patch_cells(const Field& field);
 void check_patches(const Field& field, std::uint64_t seed);
 // So close to a border of patches that rounding decides on which side p is.
 bool on_patch_border(std::span<const PatchCell> cells, Vec2<float> p);
+
+// The integrals of T over the square.
+std::vector<double> integrals_over_patches(const Field& field, std::span<const Viewer> viewers);
 
 // T / albedo of a patch, over the views of a slab.
 struct PatchSeen {

@@ -115,9 +115,15 @@ bool is_anisotropic(const AnyBrdf& f, const Values& values, const std::vector<Di
   Pcg32 u(seed, 12);
   std::vector<float> angle(wo.size());
   for (float& a : angle) a = 6.2831853f * to_unit_float(u());
-  return change_under(f, values, wo, wi, seed,
-                      [&](std::size_t k, Direction w) { return turn(w, cos(angle[k]), sin(angle[k])); })
-      .has_value();
+  const auto turned = [&](std::size_t k, Direction w) { return turn(w, cos(angle[k]), sin(angle[k])); };
+  if (change_under(f, values, wo, wi, seed, turned)) return true;
+  if (f.traits().isotropic_by_formula) return false;  // it is asked at azimuth 0 alone
+  // Pairs stand at azimuth 0. Where f leaps there, their neighbours take on all that it is on either side.
+  std::vector<Direction> any_wo = wo, any_wi = wi;
+  turn_at_random(seed, any_wo, any_wi);
+  const Values there = values_at(f, any_wo, any_wi);
+  refuse_bad_values(f, there, any_wo, any_wi);
+  return change_under(f, there, any_wo, any_wi, seed, turned).has_value();
 }
 
 ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,

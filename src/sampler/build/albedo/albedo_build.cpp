@@ -67,7 +67,8 @@ AlbedoTable build_family_albedo(const Field& field, float relative_error, const 
                                    checked && with_checks);
     };
     const auto not_asked = [](const AlbedoTable&) { return 0.; };
-    return albedo_over_azimuth(field.frame.symmetry, borders, error, row_at, not_asked, spent);
+    return albedo_over_azimuth(field.frame.symmetry, borders, leaps_at_ends(field), error, row_at, not_asked,
+                               spent);
   };
   const std::vector<KnownParameter>& parameters = field.parameters;
   const auto over_first = [&](float second, float error, bool with_checks) {
@@ -122,7 +123,8 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& 
   };
   // Rows that do not foretell each other are worth more than that: without them exact mode is off everywhere.
   const auto spent = [&] { return effort.evaluations - start > effort.limit / 2; };
-  return albedo_over_azimuth(field.frame.symmetry, borders, relative_error, row_at, miss_of, spent);
+  return albedo_over_azimuth(field.frame.symmetry, borders, leaps_at_ends(field), relative_error, row_at,
+                             miss_of, spent);
 }
 
 }  // namespace reflectree::detail

@@ -10,7 +10,7 @@
 namespace reflectree::detail {
 
 AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, const std::vector<float>& borders,
-                                float relative_error, const RowAt& row_at,
+                                bool leaps_at_ends, float relative_error, const RowAt& row_at,
                                 const std::function<double(const AlbedoTable&)>& miss_of,
                                 const std::function<bool()>& spent) {
   constexpr std::size_t most_rows = 33, most_pieces = 256;
@@ -27,7 +27,8 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, const std::vector<float
     return table;
   };
   std::vector<double> cuts;
-  if (borders.size() <= 2) {
+  const bool inside = borders.size() > 2, leaps = inside || leaps_at_ends;
+  if (!leaps) {
     for (SeriesRows series(symmetry, error, once);; series.refine()) {
       if (series.settled()) {
         AlbedoTable table = series.table();
@@ -38,12 +39,13 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, const std::vector<float
       if (series.size() >= most_rows || spent()) break;
     }
     for (int k = 0; k <= 8; ++k) cuts.push_back(k / 8.);
-  } else {
+  } else if (inside) {
     for (const float phi : borders) cuts.push_back(double(phi) / double(span));
+  } else {
+    cuts = {0, 0.5, 1};  // a single piece would go round
   }
-  const bool leaps = borders.size() > 2;
   for (;;) {
-    AlbedoTable table = albedo_in_pieces(span, cuts, leaps, error, once, spent);
+    AlbedoTable table = albedo_in_pieces(span, cuts, leaps, leaps_at_ends, error, once, spent);
     table.even = is_mirrored(symmetry);
     const double miss = miss_of(table);
     if (miss <= double(table.relative_error) || leaps || spent() || cuts.size() > most_pieces)

@@ -54,8 +54,8 @@ Misses misses_of(const Piece& piece) {
 
 }  // namespace
 
-AlbedoTable albedo_in_pieces(float span, const std::vector<double>& borders, bool leaps, double error,
-                             const RowAt& row_at, const std::function<bool()>& spent) {
+AlbedoTable albedo_in_pieces(float span, const std::vector<double>& borders, bool leaps, bool leaps_at_ends,
+                             double error, const RowAt& row_at, const std::function<bool()>& spent) {
   // Rows are dear: the last one of a piece is the first one of the next where nothing leaps between them, and
   // halves know half of theirs.
   std::vector<std::pair<double, AlbedoTable>> known;
@@ -69,7 +69,8 @@ AlbedoTable albedo_in_pieces(float span, const std::vector<double>& borders, boo
   const double enough = 0.3 * error;
   std::vector<Piece> open, done;
   for (std::size_t i = borders.size() - 1; i > 0; --i) {
-    open.push_back({borders[i - 1], borders[i], leaps && i > 1, leaps && i + 1 < borders.size()});
+    open.push_back({borders[i - 1], borders[i], i > 1 ? leaps : leaps_at_ends,
+                    i + 1 < borders.size() ? leaps : leaps_at_ends});
   }
   while (!open.empty()) {
     Piece piece = std::move(open.back());

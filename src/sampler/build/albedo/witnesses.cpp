@@ -65,6 +65,10 @@ AlbedoWitnesses::AlbedoWitnesses(const Field& field, double relative_error, std:
     for (const float phi_o : restless_azimuths(field, host, u))
       viewers_.push_back(viewer_at({theta_max * to_unit_float(u()), phi_o}));
   }
+  if (!field.patches.empty()) {
+    integrals_.values = integrals_over_patches(field, viewers_), integrals_.error = 1e-5;
+    return;
+  }
   Effort apart{0, limit};
   integrals_ =
       integrate(field, viewers_, {0.15 * relative_error, 13, 7, true, progress, progress}, host, apart);
