@@ -2,6 +2,7 @@
 #include "reflectree/verify/packing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
@@ -151,12 +152,13 @@ void check_leaves(const std::string& place, const CanonicalTree& tree, const Dom
                   const PackedSlab& slab, const PackedLeaf* leaves, std::span<const double> height,
                   Worst& worst) {
   const std::vector<SquareCell> cells = leaf_cells(tree.nodes, domain.symmetry);
-  const double y0 = domain.half() ? 0 : -1, unit_y = domain.half() ? 0x1p-15 : 0x1p-14;
+  const double y0 = domain.half() ? 0 : -1, unit_y = domain.half() ? 0x1p-16 : 0x1p-15;
   double volume = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const PackedLeaf& l = leaves[i];
-    const double x = -1 + double(l.x) * 0x1p-14, y = y0 + double(l.y) * unit_y;
-    const double width = std::ldexp(2., -l.level_x), length = std::ldexp(domain.half() ? 1. : 2., -l.level_y);
+    const double width = std::ldexp(0x1p-14, std::countr_zero(l.x)),
+                 length = std::ldexp(2 * unit_y, std::countr_zero(l.y));
+    const double x = -1 + double(l.x) * 0x1p-15 - width / 2, y = y0 + double(l.y) * unit_y - length / 2;
     worst.must(x == double(cells[i].x0) && y == double(cells[i].y0) && x + width == double(cells[i].x1) &&
                    y + length == double(cells[i].y1),
                place + text(", leaf %.0f: another cell", double(i)));

@@ -36,7 +36,8 @@ def test_tables_are_whole(sampler, mode):
     assert (len(t.slabs), len(t.leaves)) == (sampler._core.slabs[mode == "one-shot"],
                                              sampler._core.leaf_counts[mode == "one-shot"])
     assert len(t.nodes) == (len(t.leaves) - len(t.slabs) if mode == "one-shot" else 0)
-    area = 2.0 ** -(t.leaves["level_x"].astype(float) + t.leaves["level_y"])
+    x, y = t.leaves["x"].astype(np.int64), t.leaves["y"].astype(np.int64)
+    area = (x & -x) * (y & -y) * 2.0**-30
     share = t.leaves["height"] * area
     for slab in t.slabs:
         of = slice(slab["first"], slab["first"] + slab["count"])

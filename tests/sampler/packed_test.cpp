@@ -90,6 +90,24 @@ TEST(Pack, MajorantsFollowFromTheMassAndNeverFallShort) {
   });
 }
 
+// Corner and width of every cell that there is, of whole squares and of halves.
+TEST(Pack, CellsComeBackFromTheirMiddles) {
+  for (int level = 0; level <= 15; ++level) {
+    for (int k = 0; k < 1 << level; ++k) {
+      PackedLeaf leaf;
+      leaf.x = leaf.y = std::uint16_t((2 * k + 1) << (15 - level));
+      const float width = std::ldexp(2.f, -level), start = float(k) * width;
+      for (const bool half : {false, true}) {
+        const detail::LeafCell<float> cell = detail::unpack(leaf, half);
+        ASSERT_TRUE(cell.x == start - 1 && cell.width == width) << level << ' ' << k;
+        ASSERT_EQ(cell.y, half ? 0.5f * start : start - 1) << level << ' ' << k;
+        ASSERT_EQ(cell.length, half ? 0.5f * width : width) << level << ' ' << k;
+      }
+      ASSERT_EQ(area_of(leaf), std::ldexp(1.f, -2 * level));
+    }
+  }
+}
+
 // E[1 / height] over points drawn in proportion to the height is 1 / its mean, in both ways to draw.
 TEST(Pack, PointsOfALeafAreDrawnFromItsShape) {
   const PackedForest& forest = made().packed.exact;

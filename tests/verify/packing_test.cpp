@@ -44,9 +44,10 @@ TEST(PackingTwin, Leaves) {
   EXPECT_TRUE(fails(spoilt([](PackedLeaf& l) { l.height *= 1.00001f; }, 3), "packed_leaves"));
   EXPECT_TRUE(
       fails(spoilt([](PackedLeaf& l) { l.slope_y = std::int8_t(l.slope_y + 1); }, 3), "packed_leaves"));
-  EXPECT_TRUE(fails(spoilt([](PackedLeaf& l) { l.x = std::uint16_t(l.x ^ 1U); }, 3), "packed_leaves"));
-  EXPECT_TRUE(
-      fails(spoilt([](PackedLeaf& l) { l.level_y = std::uint8_t(l.level_y + 1); }, 3), "packed_leaves"));
+  const auto a_cell_on = [](PackedLeaf& l) { l.x = std::uint16_t(l.x + 2 * half_width(l.x)); };
+  EXPECT_TRUE(fails(spoilt(a_cell_on, 3), "packed_leaves"));
+  const auto half_as_wide = [](PackedLeaf& l) { l.y = std::uint16_t(l.y - half_width(l.y) / 2); };
+  EXPECT_TRUE(fails(spoilt(half_as_wide, 3), "packed_leaves"));
 }
 
 TEST(PackingTwin, AUnitOfAnAliasTable) {

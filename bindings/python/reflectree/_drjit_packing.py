@@ -19,14 +19,13 @@ def cells(tables: Tables) -> Array:
     """x, y, width, length, slope_x, slope_y, height of every leaf, and one number to spare."""
     leaves = tables.leaves
     cells = np.zeros((len(leaves), 8), np.float32)
-    cells[:, 0] = (leaves["x"].astype(np.float64) - 0x4000) * 2.0**-14
-    cells[:, 2] = 2.0 ** (1 - leaves["level_x"].astype(np.float64))
-    if tables.half:
-        cells[:, 1] = leaves["y"] * 2.0**-15
-        cells[:, 3] = 2.0 ** -leaves["level_y"].astype(np.float64)
-    else:
-        cells[:, 1] = (leaves["y"].astype(np.float64) - 0x4000) * 2.0**-14
-        cells[:, 3] = 2.0 ** (1 - leaves["level_y"].astype(np.float64))
+    for axis, name in enumerate(("x", "y")):
+        middle = leaves[name].astype(np.int64)
+        half_width = middle & -middle
+        from_zero = axis == 1 and tables.half
+        unit = 2.0**-16 if from_zero else 2.0**-15
+        cells[:, axis] = (middle - half_width) * unit - (0 if from_zero else 1)
+        cells[:, axis + 2] = 2 * half_width * unit
     cells[:, 4], cells[:, 5] = leaves["slope_x"] / 128, leaves["slope_y"] / 128
     cells[:, 6] = leaves["height"]
     return cells

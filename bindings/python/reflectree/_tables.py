@@ -12,7 +12,7 @@ from ._arrays import Array
 # Layouts of PackedSlab, PackedLeaf, DescentNode, AlbedoPiece and PackedAlbedo::Segment, and of the albedo's table.
 SLAB = np.dtype([("first", "<u4"), ("count", "<u4"), ("first_node", "<u4"), ("bucket", "<u4"), ("volume", "<f4")])
 LEAF = np.dtype([("threshold", "<u4"), ("height", "<f4"), ("alias", "<u2"), ("x", "<u2"), ("y", "<u2"),
-                 ("level_x", "u1"), ("level_y", "u1"), ("slope_x", "i1"), ("slope_y", "i1")], align=True)
+                 ("slope_x", "i1"), ("slope_y", "i1")])
 NODE = np.dtype([("lower", "<f4"), ("lower_leaves_split_x", "<u4")])
 PIECE = np.dtype([("base", "<f4"), ("slope", "<f4")])
 SEGMENT = np.dtype([("phi_o", "<f4"), ("rows_per_radian", "<f4"), ("first", "<u4"), ("last", "<u4")])
@@ -74,7 +74,8 @@ class Tables(NamedTuple):
         The slabs in preorder: 0 splits theta_o, 1 phi_o (radians), 255 is a slab; the splits of inner nodes.
     slabs, leaves, nodes : structured arrays
         Trees: of isotropic functions in the order of ``borders``, else in that of the partition. A leaf has its
-        bucket of the alias table, its height (density or majorant per share of the square), cell and slopes / 128.
+        bucket of the alias table, its height (density or majorant per share of the square), slopes / 128, and the
+        middle of its cell in 2^-16 of the square, whose lowest bit is half of the cell's width.
         Nodes, in preorder, are there in one-shot mode alone; the top bit of ``lower_leaves_split_x`` says whether
         x is split.
     albedo_borders, albedo_pieces, albedo_segments : arrays

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace reflectree::detail {
 
@@ -14,6 +15,7 @@ struct Task {
 
 struct SlabState {
   bool active = true;
+  float dear = 1;  // how many times the leaves of others it may have where the budget ends
   std::size_t leaves = 1;
   std::size_t next_check = 16;
   std::size_t most = 0;
@@ -205,6 +207,8 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   std::vector<std::uint32_t> blind;
   if (fits && abs(ideal - expected_mass(slab)) > allowed) blind = coarsest_leaves(slab);
   const bool met = fits && blind.empty();
+  const bool uneven = met && !nothing && rules.worst_view > 0 && !is_grazing(slab) &&
+                      worst_view(slab) > double(rules.worst_view);
   if (may_halve && (met || state.leaves >= state.next_check)) {
     // What all known coordinates cost together, and the one that costs most.
     int dearest = -1;
@@ -217,7 +221,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
     }
     if (dearest >= 0) state.next_check = state.leaves * 3 / 2;
     if (dearest >= 0 &&
-        all > dearer[slab.box.axes - 1] * rules.known_share * max(budget * ideal, cost - ideal))
+        (uneven || all > dearer[slab.box.axes - 1] * rules.known_share * max(budget * ideal, cost - ideal)))
       return {dearest, {}};
   }
   if (met || state.leaves >= state.most) return {};
@@ -261,20 +265,29 @@ void halve(std::vector<Slab>& slabs, std::vector<SlabState>& states, std::vector
   states = std::move(next_states);
 }
 
-// How many leaves every slab that asks for more can have, of so many to come.
+// How many leaves every slab that asks for more can have, of so many to come; dear ones several times as many.
 float level_of(const std::vector<SlabState>& states, double leaves) {
-  std::vector<double> has;
+  // The level at which a slab stands, and what one level more costs there.
+  std::vector<std::pair<double, double>> has;
   for (const SlabState& state : states) {
-    if (state.active) has.push_back(double(state.leaves));
+    if (state.active) has.emplace_back(double(state.leaves) / double(state.dear), double(state.dear));
   }
   std::sort(has.begin(), has.end());
   double level = 0, slabs = 0;  // of those below the level
-  for (const double own : has) {
+  for (const auto& [own, dear] : has) {
     if (slabs > 0 && leaves < slabs * (own - level)) break;
     leaves -= slabs * (own - level);
-    level = own, ++slabs;
+    level = own, slabs += dear;
   }
   return float(slabs > 0 ? level + std::max(leaves, 0.) / slabs : 0);
+}
+
+// By how much what a slab costs beyond its ideal exceeds what it may.
+float dearness(const Slab& slab, const GrowthRules& rules) {
+  constexpr float most = 4;
+  const SlabTotal sum = total_of(slab);
+  const double excess = sum.ideal > 0 ? sum.cost / sum.ideal - 1 : 0;
+  return clamp(float(excess) / (rules.goal_of(slab) - 1), 1.f, most);
 }
 
 }  // namespace
@@ -310,6 +323,9 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
       may_halve = may_halve && double(survey.effort.evaluations) < 0.7 * double(survey.effort.limit);
     } else {
       const auto leaf = double(2 * slabs.front().views.size() * grid_points);
+      for (std::size_t s = 0; s < slabs.size(); ++s) {
+        if (states[s].active) states[s].dear = dearness(slabs[s], rules);
+      }
       level = level_of(states, (double(rules.effort_share) * left - used) / leaf);
       may_halve = may_halve && level > float(rules.leaves_kept);
     }
@@ -317,7 +333,8 @@ void grow(std::vector<Slab>& slabs, const Survey& survey, const GrowthRules& rul
       Step step = next_step(slabs[s], states[s], rules, may_halve, survey.albedo.relative_error);
       if (step.halve >= 0) halved.push_back({s, step.halve});
       states[s].active = step.halve >= 0 || !step.split.empty();
-      if (float(states[s].leaves) >= level) step.split.clear();  // what is left belongs to others
+      // What is left belongs to others.
+      if (float(states[s].leaves) >= level * states[s].dear) step.split.clear();
       for (const std::uint32_t i : step.split) {
         split_leaf(slabs[s], i, survey.field.domain);
         const std::uint32_t child = slabs[s].nodes[i].child;

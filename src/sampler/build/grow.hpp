@@ -33,6 +33,9 @@ struct GrowthRules {
   // more; and none grows beyond what that effort allows for each. 0: whoever comes first.
   std::size_t leaves_kept = 0;
   float grazing_goal = 0;  // of grazing slabs; 0: the same
+  // A slab below grazing in which the one-shot weights of one view vary by more than this is halved, though the
+  // slab as a whole has met its goal. 0: no view is asked.
+  float worst_view = 0;
   // After an attack slabs that cost no more than this are done, however far from the goal, and no other may have
   // more than a few times the leaves that it has: what it costs may come of its width. 0: no such mercy.
   float enough = 0;

@@ -170,6 +170,16 @@ void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {
       difference += w * d[j][i];
     }
   }
+  leaf.of_view = {};
+  if (views.size() == views_of_two_angles) {
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const int row = int(i / grid_size % grid_size), column = int(i % grid_size);
+      const float w = lobatto_weights[row] * lobatto_weights[column];
+      ViewMoments& view = leaf.of_view[i / grid_points];
+      view.mean += w * grid[i].mean;
+      view.square += w * sqr(grid[i].mean) / grid_shape(leaf.slope_x, leaf.slope_y, row, column);
+    }
+  }
   const float area = area_share(leaf.cell);
   // What mirror images differ by belongs to the best density, but no splitting saves it: it is no cost.
   leaf.height = max(sqrt(square + difference), floor_share);

@@ -90,6 +90,12 @@ GridPlace grid_place(std::span<const View> views, std::size_t index);
 // T / albedo on the grid of a leaf: [view][y][x].
 using Grid = std::span<const FieldValue>;
 
+// Of one view, over a leaf: the means of T / albedo and of (T / albedo)^2 / q.
+struct ViewMoments {
+  float mean = 0, square = 0;
+};
+inline constexpr std::size_t views_of_two_angles = views_per_axis * views_per_axis;
+
 struct Leaf {
   DyadicCell cell;
   float ideal = 0, cost = 0;
@@ -105,6 +111,8 @@ struct Leaf {
   // Along which known coordinates a landmark moves through the leaf faster than the slab's views can follow.
   std::array<bool, known_slots> crossed{};
   Vec2<float> seen_at{};
+  // One-shot, where wo has two angles and nothing else is known.
+  std::array<ViewMoments, views_of_two_angles> of_view{};
 
   // Remembers the largest T / albedo.
   void note(float value, const Known& by, Vec2<float> at) {

@@ -118,6 +118,26 @@ SlabTotal total_of(const Slab& slab) {
   return total;
 }
 
+double worst_view(const Slab& slab) {
+  std::array<double, views_of_two_angles> mean{}, square{};
+  double all = 0;
+  for (const Node& node : slab.nodes) {
+    if (node.split != TreeSplit::leaf) continue;
+    const Leaf& leaf = node.leaf;
+    const auto area = double(area_share(leaf.cell)), height = double(leaf.height);
+    all += area * height;
+    for (std::size_t k = 0; k < leaf.of_view.size(); ++k) {
+      mean[k] += area * double(leaf.of_view[k].mean);
+      square[k] += area * double(leaf.of_view[k].square) / height;
+    }
+  }
+  double worst = 0;
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    if (mean[k] > 0) worst = std::max(worst, all * square[k] / sqr(mean[k]) - 1);
+  }
+  return worst;
+}
+
 void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain) {
   const auto child = std::uint32_t(slab.nodes.size());
   Leaf leaf = slab.nodes[index].leaf;

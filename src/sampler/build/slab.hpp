@@ -49,6 +49,8 @@ struct SlabTotal {
   double variance() const { return ideal > 0 ? sqr(cost / ideal) - 1 : 0; }
 };
 SlabTotal total_of(const Slab& slab);
+// Of one-shot weights, relative: of the view whose weights vary most. 0 where leaves do not know their views.
+double worst_view(const Slab& slab);
 // Splits a leaf along its axis; what was seen in it goes to the child that holds the place.
 void split_leaf(Slab& slab, std::uint32_t index, const Domain& domain);
 

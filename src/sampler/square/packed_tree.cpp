@@ -51,10 +51,12 @@ std::vector<PackedLeaf> packed_leaves(const CanonicalTree& tree) {
       leaves.push_back(c);
       continue;
     }
-    const std::uint8_t level = ++(split == TreeSplit::x ? c.level_x : c.level_y);
     PackedLeaf upper = c;
-    std::uint16_t& start = split == TreeSplit::x ? upper.x : upper.y;
-    start = std::uint16_t(start + (0x8000U >> level));
+    const auto halve = [&](std::uint16_t PackedLeaf::*middle) {
+      const std::uint32_t quarter = half_width(c.*middle) / 2;
+      upper.*middle = std::uint16_t(c.*middle + quarter), c.*middle = std::uint16_t(c.*middle - quarter);
+    };
+    halve(split == TreeSplit::x ? &PackedLeaf::x : &PackedLeaf::y);
     stack.push_back(upper);
     stack.push_back(c);
   }

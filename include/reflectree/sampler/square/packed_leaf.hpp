@@ -2,6 +2,8 @@
 // One leaf at run time: choosing it, a point in it, the shape across it.
 #pragma once
 
+#include <bit>
+
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/square/packed_tree.hpp"
 
@@ -67,10 +69,13 @@ struct LeafCell {
   T height;
 };
 REFLECTREE_INLINE LeafCell<float> unpack(const PackedLeaf& leaf, bool half) {
-  return {float(int(leaf.x) - 0x4000) * 0x1p-14f,
-          half ? float(leaf.y) * 0x1p-15f : float(int(leaf.y) - 0x4000) * 0x1p-14f,
-          power_of_two(1 - leaf.level_x),
-          power_of_two((half ? 0 : 1) - leaf.level_y),
+  // Without its lowest bit the middle is where the cell starts.
+  const std::uint32_t x = leaf.x, y = leaf.y;
+  const int start_x = int(x & (x - 1)), start_y = int(y & (y - 1));
+  return {float(start_x - 0x8000) * 0x1p-15f,
+          half ? float(start_y) * 0x1p-16f : float(start_y - 0x8000) * 0x1p-15f,
+          power_of_two(std::countr_zero(x) - 14),
+          power_of_two(std::countr_zero(y) - (half ? 15 : 14)),
           float(leaf.slope_x) * (1.f / 128),
           float(leaf.slope_y) * (1.f / 128),
           leaf.height};

@@ -2,7 +2,6 @@
 // A tree as it is sampled: leaves with an alias table, and inner nodes for the monotone descent.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,20 +10,24 @@
 
 namespace reflectree {
 
-// One leaf. Its cell starts at (x, y) / 2^15 of the root square and is 2^-level of it wide and high.
+// One leaf: four fill a line of the cache.
 struct PackedLeaf {
   std::uint32_t threshold = 0;  // of the alias table's bucket with this index
   float height = 0;             // majorant or density, per share of the square
   std::uint16_t alias = 0;
-  std::uint16_t x = 0, y = 0;
-  std::uint8_t level_x = 0, level_y = 0;
+  // The middle of the cell in 2^-16 of the root square. Its lowest bit is half of the cell's width: cells are
+  // halves of halves.
+  std::uint16_t x = 0x8000, y = 0x8000;
   std::int8_t slope_x = 0, slope_y = 0;
 };
-static_assert(sizeof(PackedLeaf) == 20);
+static_assert(sizeof(PackedLeaf) == 16);
+
+// Of a leaf's x or y.
+inline std::uint32_t half_width(std::uint32_t middle) { return middle & (0U - middle); }
 
 // The leaf's share of the square.
 inline float area_of(const PackedLeaf& leaf) {
-  return std::bit_cast<float>(std::uint32_t(127 - leaf.level_x - leaf.level_y) << 23U);
+  return float(half_width(leaf.x) * half_width(leaf.y)) * 0x1p-30f;
 }
 
 struct PackedSlab {

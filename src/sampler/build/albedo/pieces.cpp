@@ -104,11 +104,12 @@ AlbedoTable albedo_in_pieces(float span, const std::vector<double>& borders, boo
   }
   table.cos_theta_o = all_columns(rows);
   RowValues values = values_on(rows, table.cos_theta_o);
-  thin_out(table.cos_theta_o, values, thinned * error);
+  const double thin = thinning(error, double(table.relative_error) + missed);
+  thin_out(table.cos_theta_o, values, thin);
   for (const auto& row_values : values) {
     for (const double a : row_values) table.albedo.push_back(float(std::max(a, 0.)));
   }
-  const double stated = double(table.relative_error) + thinned * error + missed;
+  const double stated = double(table.relative_error) + thin + missed;
   table.relative_error = float(std::min(std::max(stated, error), 1.));
   return table;
 }

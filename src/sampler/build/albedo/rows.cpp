@@ -38,6 +38,8 @@ double relative(double a, double b) {
   return larger > 0 ? std::abs(a - b) / larger : 0;
 }
 
+double thinning(double error, double known) { return std::max(thinned * error, 0.99 * (error - known)); }
+
 void thin_out(std::vector<float>& columns, RowValues& values, double error) {
   std::vector<std::size_t> kept{0};
   const auto served = [&](std::size_t from, std::size_t to) {

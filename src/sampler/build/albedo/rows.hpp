@@ -25,7 +25,9 @@ double relative(double a, double b);
 // Columns that lines over them serve as well, in every row, are left out.
 void thin_out(std::vector<float>& columns, RowValues& values, double error);
 
-// Of the error, by which lines over the cosine may miss what was integrated.
+// By how much lines over the cosine may miss what was integrated: this share of the error, or all that what else
+// is `known` to miss leaves of it.
 inline constexpr double thinned = 0.15;
+double thinning(double error, double known);
 
 }  // namespace reflectree::detail

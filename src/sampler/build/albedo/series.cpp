@@ -12,6 +12,7 @@ namespace reflectree::detail {
 namespace {
 
 constexpr std::size_t most_table_rows = 257;
+constexpr double most_bent = 0.2;  // of the error, by which cubics between rows may miss
 
 // Values at equidistant azimuths from 0 to the span, both ends included, as a trigonometric series: where
 // mirroring leaves the function alone at both ends, of cosines; else periodic.
@@ -120,7 +121,23 @@ AlbedoTable SeriesRows::table() const {
   double bent = foretells ? 0 : missed_;  // by the cubics between the rows of the table
   for (; foretells; count = 2 * count - 1) {
     bent = bend(series, columns, count);
-    if (bent <= 0.2 * error_ || count >= most_table_rows) break;
+    if (bent <= most_bent * error_ || count >= most_table_rows) break;
+  }
+  if (foretells && bent < most_bent * error_) {
+    // Cubics miss with the fourth power of the distance: how few rows may do is known, and tried.
+    const double wider = std::pow(bent / (most_bent * error_), 0.25);
+    const std::size_t fewer =
+        std::max(std::size_t(5), 1 + std::size_t(std::ceil(1.03 * wider * double(count - 1))));
+    const double then = fewer < count ? bend(series, columns, fewer) : 1;
+    if (then <= most_bent * error_) count = fewer, bent = then;
+  }
+  const double thin = thinning(error_, double(table.relative_error) + bent + (foretells ? remaining_ : 0));
+  if (thin > thinned * error_) {
+    columns = columns_, values = values_;
+    thin_out(columns, values, thin);
+    series.clear();
+    for (std::size_t i = 0; foretells && i < columns.size(); ++i)
+      series.emplace_back(column_of(values, i), even_);
   }
   table.cos_theta_o = columns;
   for (std::size_t k = 0; k < count; ++k) {
@@ -131,7 +148,7 @@ AlbedoTable SeriesRows::table() const {
     }
   }
   table.even = even_;
-  const double stated = double(table.relative_error) + thinned * error_ + bent + (foretells ? remaining_ : 0);
+  const double stated = double(table.relative_error) + thin + bent + (foretells ? remaining_ : 0);
   table.relative_error = float(std::min(std::max(stated, error_), 1.));
   return table;
 }
