@@ -77,7 +77,9 @@ void check_enclosure(const EnclosedField& field, const std::vector<SlabProof>& s
         at[k] = k == 1 || k == 2 ? double(to_unit_float(u()))
                                  : linear_mix(to_unit_double(u()), whole.lo[k], whole.hi[k]);
       }
-      check_value(field.over({at, at}, slab.known, leaf), field.at(at, slab.known, leaf));
+      ProofBox box{at, at};
+      box.lo[star_axis] = whole.lo[star_axis], box.hi[star_axis] = whole.hi[star_axis];
+      check_value(field.over(box, slab.known, leaf), field.at(at, slab.known, leaf));
     }
   }
 }
