@@ -150,8 +150,7 @@ class LeafSearch {
     if (packed_.viewer.frame.isotropic()) return {sine, 0, p.c};
     const float phi = p.beyond[0];
     Direction wo{sine * std::cos(phi), sine * std::sin(phi), p.c};
-    const bool half_turn =
-        symmetry == ViewerSymmetry::half_turn || symmetry == ViewerSymmetry::two_planes;
+    const bool half_turn = symmetry == ViewerSymmetry::half_turn || symmetry == ViewerSymmetry::two_planes;
     if (half_turn && (p.image & 1U) != 0) wo.x = -wo.x, wo.y = -wo.y;
     if (is_mirrored(symmetry) && (p.image & 2U) != 0) wo.y = -wo.y;
     return turn(wo, packed_.viewer.cos_axis, packed_.viewer.sin_axis);

@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
     for (const std::string& name : materials) {
       const Material material = parse_material(name);
       const bool held = is_family(material) ? search(name, make_family(material), options, planted, host)
-                                             : search(name, make_brdf(material), options, planted, host);
+                                            : search(name, make_brdf(material), options, planted, host);
       holds = held && holds;
     }
     return holds ? 0 : 1;

@@ -154,7 +154,8 @@ SeenAngles compare_angles(double off) {
       Point at;
       for (std::size_t a = 0; a < 5; ++a) at[a] = between(box.lo[a], box.hi[a]);
       const double sine = std::sin(at[0]);
-      const Direction wo{float(sine * std::cos(at[3])), float(sine * std::sin(at[3])), float(std::cos(at[0]))};
+      const Direction wo{float(sine * std::cos(at[3])), float(sine * std::sin(at[3])),
+                         float(std::cos(at[0]))};
       const Vec2<float> half = cos_sin_half(float(at[1]));
       const Vec2<float> tau = detail::Stretched<float>{domain.stretch}.along({half.y, half.x});
       const detail::SlopeStar<float> star = detail::slope_star(wo, tau);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "leaf.hpp"
+
 namespace reflectree::detail {
 
 namespace {
@@ -43,7 +45,9 @@ Halves halved(const SlabProof& slab, std::size_t k, const EnclosedField& field, 
     bool proved = true;
     for (const bool upper : {false, true}) {
       const PackedLeaf half = half_of(leaf, split, upper);
-      const LeafProof proof = prove_leaf(field, slab.known, half, limits);
+      PackedLeaf low = half;  // the whole leaf's bound says little of a half
+      low.height = floor_share;
+      const LeafProof proof = prove_leaf(field, slab.known, low, limits);
       proved = proved && proof.proved;
       tried.leaves[upper] = half, tried.proofs[upper] = proof;
       tried.volume += double(area_of(half)) * proof.bound;

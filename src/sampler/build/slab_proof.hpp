@@ -12,7 +12,7 @@ struct SlabProof {
   KnownRange known;
   std::vector<PackedLeaf> leaves;
   std::vector<LeafProof> proofs;  // of each leaf
-  CanonicalTree tree;             // nodes and slopes; grows where a leaf is halved
+  CanonicalTree tree;             // nodes and slopes, which grow where a leaf is halved; masses are the build's
 
   bool proved() const;
   // Expected trials with the bounds that the build left, and with those that were proved.
