@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "reflectree/brdf/any_brdf.hpp"
-#include "reflectree/brdf/models/widths.hpp"
 #include "reflectree/brdf/parameter.hpp"
 #include "reflectree/math/affine_form.hpp"
 
@@ -118,17 +117,16 @@ inline AffineForm stretched_sin2_theta(const Vec3<AffineForm>& w, const AffineFo
   return narrower(plain, widened(alpha2 + (AffineForm(1) - alpha2) * sin2, 20 * 0x1p-24));
 }
 
-// For ggx.hpp and others, where the map tells the slopes: r^2 cos^2 theta_h (a c^2 + b s^2), c^2 + s^2 = 1 of the azimuth;
-// a = b where the map is as wide as the lobe.
-template <class N>
-AffineForm sin2_by_widths(const ShadingGeometry<AffineForm>& g, const WidthsOf<N>& alpha, const Azimuth& phi) {
-  const AffineForm plain = sin2_by_widths(in_frame_of(phi, g.wh), alpha);
+// (x / alpha_x)^2 + (y / alpha_y)^2 of a half vector (widths.hpp), where the map tells its slopes, also as
+// r^2 cos^2 theta_h (a c^2 + b s^2), c^2 + s^2 = 1 of the azimuth; a = b where the map is as wide as the lobe.
+inline AffineForm sin2_of_slopes(const ShadingGeometry<AffineForm>& g, const AffineForm& alpha_x,
+                                 const AffineForm& alpha_y, const AffineForm& plain) {
   const HalfSlopes& h = g.slopes;
-  if (!h.known || phi.degrees != 0) return plain;
-  const AffineForm a = sqr(h.widths.x / AffineForm(alpha.x)), b = sqr(h.widths.y / AffineForm(alpha.y));
+  if (!h.known) return plain;
+  const AffineForm a = sqr(h.widths.x / alpha_x), b = sqr(h.widths.y / alpha_y);
   const double least = std::min(a.range.lo, b.range.lo), most = std::max(a.range.hi, b.range.hi);
   if (!(least > 0) || !(most < 100 * least)) return plain;
-  const RealInterval ratio = AffineForm(alpha.x).range / AffineForm(alpha.y).range;
+  const RealInterval ratio = alpha_x.range / alpha_y.range;
   const double off = 2e-6 * most / least + 4 * h.turn * std::max(ratio.hi, 1 / ratio.lo);
   const AffineForm c2 = sqr(h.azimuth.x), s2 = sqr(h.azimuth.y);
   const AffineForm around = narrower(narrower(a * c2 + b * s2, a + (b - a) * s2), b + (a - b) * c2);

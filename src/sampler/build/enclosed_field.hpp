@@ -23,7 +23,7 @@ struct EnclosedPoint {
   // T for both signs of wi.y: the second is missing where a square tells them apart, or f does not.
   AffineForm target;
   std::optional<AffineForm> mirrored;
-  AffineForm unit;  // albedo q: T may reach majorant times it; 0 where the box is empty
+  AffineForm unit;           // albedo q: T may reach majorant times it; 0 where the box is empty
   RealInterval angle{0, 0};  // of the star, as far as the box has it
 };
 struct PointValue {

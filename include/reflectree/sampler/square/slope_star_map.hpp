@@ -55,8 +55,8 @@ REFLECTREE_INLINE T squared_normal(const Vec2<T>& tau, const Vec2<T>&, T) {
 }
 // wo.n, n = (tau, 1).
 template <class T>
-REFLECTREE_INLINE T cosine_to_normal(const Vec3<T>& wo, const Vec2<T>& tau, const SlopeStar<T>&, const Vec2<T>&,
-                                     T, T) {
+REFLECTREE_INLINE T cosine_to_normal(const Vec3<T>& wo, const Vec2<T>& tau, const SlopeStar<T>&,
+                                     const Vec2<T>&, T, T) {
   return wo.x * tau.x + wo.y * tau.y + wo.z;
 }
 // cos theta_i = 2 (wo.n) / (n.n) - cos theta_o of a place of the star. Where nothing is known but a box of
