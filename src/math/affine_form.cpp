@@ -90,6 +90,13 @@ AffineForm narrower(const AffineForm& a, const AffineForm& b) {
     out.log_middle = b.log_middle, out.log_slope = b.log_slope, out.log_error = b.log_error;
   return out;
 }
+AffineForm with_named_error(const AffineForm& x, std::size_t k) {
+  LogForm log = log_of(x);
+  if (!(log.error < 1) || !(x.range.lo > 0)) return x;
+  // What is left: programs may compute x twice, and round it otherwise.
+  log.slope[k] = log.error, log.error = 0x1p-22;
+  return exponential(log, RealInterval::whole(), x.range, 0);
+}
 AffineForm widened(const AffineForm& x, double share) {
   const double more = x.range.magnitude() * share;
   AffineForm out = x;
@@ -103,11 +110,28 @@ AffineForm linear_enclosure(const AffineForm& x, double alpha, RealInterval offs
   return between_lines(x, alpha, offset.lo, offset.hi, range, 0);
 }
 
+namespace {
+// The same by the logarithm of a / (factor b).
+double upper_by_logarithm(const AffineForm& a, double factor, const AffineForm& b) {
+  const LogForm log_a = log_of(a), log_b = log_of(b);
+  if (!(log_a.error + log_b.error < 1) || !(b.range.lo > 0) || !(a.range.lo > 0)) return detail::infinity;
+  double sum = log_a.middle - log_b.middle - std::log(factor);
+  for (std::size_t i = 0; i < n; ++i) sum += std::abs(log_a.slope[i] - log_b.slope[i]);
+  sum += log_a.error + log_b.error + (log_a.size() + log_b.size() + std::abs(std::log(factor))) * own;
+  const double share = std::expm1(sum) * (1 + (sum > 0 ? 8 : -8) * own);
+  return factor * (share > 0 ? b.range.hi : b.range.lo) * share;
+}
+}  // namespace
+
 double upper_of_difference(const AffineForm& the_a, double factor, const AffineForm& the_b) {
   const Settled settled_a(the_a), settled_b(the_b);
   const AffineForm &a = settled_a.form(), &b = settled_b.form();
   const double by_range = detail::above(a.range.hi - detail::below(factor * b.range.lo));
-  if (!is_known(a) || !is_known(b)) return by_range < detail::infinity ? by_range : detail::infinity;
+  const double by_log = upper_by_logarithm(the_a, factor, the_b);
+  if (!is_known(a) || !is_known(b)) {
+    const double known = std::min(by_range, by_log);
+    return known < detail::infinity ? known : detail::infinity;
+  }
   double sum = a.middle - factor * b.middle, size = std::abs(a.middle) + std::abs(factor * b.middle);
   for (std::size_t i = 0; i < n; ++i) {
     sum += std::abs(a.slope[i] - factor * b.slope[i]);
@@ -115,7 +139,7 @@ double upper_of_difference(const AffineForm& the_a, double factor, const AffineF
   }
   const double error = a.error + factor * b.error;
   const double by_tube = sum + error + (size + error) * own;
-  const double upper = std::min(by_range, by_tube);
+  const double upper = std::min({by_range, by_tube, by_log});
   return upper < detail::infinity ? upper : detail::infinity;
 }
 Slopes slopes_of_difference(const AffineForm& the_a, double factor, const AffineForm& the_b) {

@@ -28,7 +28,7 @@ LogForm log_of(const AffineForm& x) {
 void add_log(AffineForm& x, const LogForm& a, double sign, const LogForm& b, double unit) {
   // Below this the underflow counts.
   const double least = std::max(x.range.lo, -x.range.hi);
-  if (!(a.error + b.error < 1) || !(least > 1e-30)) return;
+  if (!(a.error + b.error < 3) || !(least > 1e-30)) return;
   x.log_middle = a.middle + sign * b.middle;
   for (std::size_t i = 0; i < n; ++i) x.log_slope[i] = a.slope[i] + sign * b.slope[i];
   x.log_error = a.error + b.error + 1.001 * unit + flushed / least + (a.size() + b.size()) * own;
@@ -47,7 +47,7 @@ void add_log_of_sum(AffineForm& out, const AffineForm& a, double sign, const Aff
   }
   if (sign < 0 || !(a.range.lo > 0) || !(b.range.lo > 0) || (!is_log_known(a) && !is_log_known(b))) return;
   const LogForm log_a = log_of(a), log_b = log_of(b);
-  if (!(log_a.error + log_b.error < 1)) return;
+  if (!(log_a.error + log_b.error < 3)) return;
   LogForm u{log_b.middle - log_a.middle, {}, log_a.error + log_b.error};
   for (std::size_t i = 0; i < n; ++i) u.slope[i] = log_b.slope[i] - log_a.slope[i];
   u.error += (log_a.size() + log_b.size()) * own;

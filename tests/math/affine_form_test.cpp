@@ -192,5 +192,30 @@ TEST(AffineForm, WhatMayLeaveTheRangeOfFloatIsInfinite) {
   EXPECT_LT(vanishing.range.hi, 1e-14);
 }
 
+// What a form owes to the error of a step is a variable: it holds the step's values, and cancels.
+int outside_of_named(double share) {
+  Pcg32 u(31);
+  int outside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double width = 0.2 + 0.5 * to_unit_double(u());
+    const AffineForm x = AffineForm::variable(0, 1, 1 + width), y = AffineForm::variable(2, 2, 2 + width);
+    AffineForm named = with_named_error(x * x + exp(y) * sqrt(x), 7);
+    named.log_slope[7] *= share;
+    const AffineForm cancelled = named * named / named;
+    for (int k = 0; k < 20; ++k) {
+      const double a = to_unit_double(u()), b = to_unit_double(u()), vx = 1 + width * a, vy = 2 + width * b;
+      const double value = vx * vx + std::exp(vy) * std::sqrt(vx);
+      const double line =
+          cancelled.log_middle + cancelled.log_slope[0] * (2 * a - 1) + cancelled.log_slope[2] * (2 * b - 1);
+      outside += std::abs(std::log(value) - line) > std::abs(cancelled.log_slope[7]) + cancelled.log_error;
+    }
+    EXPECT_LT(cancelled.log_error, 1e-5);
+    EXPECT_NEAR(cancelled.log_slope[7], named.log_slope[7], 1e-9);
+  }
+  return outside;
+}
+TEST(AffineForm, NamedErrorsHoldAndCancel) { EXPECT_EQ(outside_of_named(1), 0); }
+TEST(AffineFormTwin, ANamedErrorThatIsTooSmallIsFound) { EXPECT_GT(outside_of_named(0.25), 0); }
+
 }  // namespace
 }  // namespace reflectree

@@ -23,12 +23,20 @@ struct BackVector {
 struct HalfAzimuth {
   AffineForm cosine, sine, angle;
 };
+// Of maps of slopes: wh.x / wh.z = r widths.x azimuth.x, likewise y, up to signs; |azimuth| = 1 up to 1.2e-6.
+struct HalfSlopes {
+  bool known = false;
+  AffineForm r;
+  Vec2<AffineForm> widths, azimuth;
+  double turn = 0;  // by which the frame may be off, radians
+};
 template <>
 struct ShadingGeometry<AffineForm> {
   Vec3<AffineForm> wo, wi, wh;
   AffineForm cos_theta_o, cos_theta_i, cos_theta_h, cos_theta_d;
   std::optional<BackVector> back = std::nullopt;
   std::optional<HalfAzimuth> azimuth_h = std::nullopt;
+  HalfSlopes slopes = {};
 };
 
 // The azimuth that the map told, while g is in the frame in which it told it: a geometry that was turned or mirrored
@@ -107,6 +115,22 @@ inline AffineForm stretched_sin2_theta(const Vec3<AffineForm>& w, const AffineFo
   const AffineForm sin2 = sin2_theta(w), alpha2 = sqr(alpha);
   const AffineForm plain = sin2 + sqr(alpha * w.z);
   return narrower(plain, widened(alpha2 + (AffineForm(1) - alpha2) * sin2, 20 * 0x1p-24));
+}
+
+// (x / alpha_x)^2 + (y / alpha_y)^2 of a half vector (widths.hpp), where the map tells its slopes, also as
+// r^2 cos^2 theta_h (a c^2 + b s^2), c^2 + s^2 = 1 of the azimuth; a = b where the map is as wide as the lobe.
+inline AffineForm sin2_of_slopes(const ShadingGeometry<AffineForm>& g, const AffineForm& alpha_x,
+                                 const AffineForm& alpha_y, const AffineForm& plain) {
+  const HalfSlopes& h = g.slopes;
+  if (!h.known) return plain;
+  const AffineForm a = sqr(h.widths.x / alpha_x), b = sqr(h.widths.y / alpha_y);
+  const double least = std::min(a.range.lo, b.range.lo), most = std::max(a.range.hi, b.range.hi);
+  if (!(least > 0) || !(most < 100 * least)) return plain;
+  const RealInterval ratio = alpha_x.range / alpha_y.range;
+  const double off = 2e-6 * most / least + 4 * h.turn * std::max(ratio.hi, 1 / ratio.lo);
+  const AffineForm c2 = sqr(h.azimuth.x), s2 = sqr(h.azimuth.y);
+  const AffineForm around = narrower(narrower(a * c2 + b * s2, a + (b - a) * s2), b + (a - b) * c2);
+  return narrower(plain, widened(sqr(h.r * g.wh.z) * around, off));
 }
 
 // What encloses a function of three channels (a grey one has three that are equal): every value that it returns

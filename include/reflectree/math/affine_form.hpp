@@ -21,11 +21,12 @@
 namespace reflectree {
 
 struct AffineForm {
-  // As many as a proof has unknowns at most: two coordinates of the square, two of the viewer, two parameters.
-  static constexpr std::size_t variables = 6;
+  // As many as a proof has at most: two coordinates of the square, two of the viewer, two parameters; a number on
+  // the way that is divided as they are; the error of one.
+  static constexpr std::size_t variables = 8;
   using Slopes = std::array<double, variables>;
 
-  // The values at e in [-1, 1]^6: middle + slope . e, up to `error`; all of them lie in `range`.
+  // The values at e in [-1, 1]^8: middle + slope . e, up to `error`; all of them lie in `range`.
   double middle = 0;
   Slopes slope{};
   double error = 0;  // infinite: the range alone is known
@@ -88,6 +89,9 @@ AffineForm weighted_sum(float first, std::span<const float> weights, std::span<c
 AffineForm either(const AffineForm& a, const AffineForm& b);
 // Of two forms of the same number the better parts.
 AffineForm narrower(const AffineForm& a, const AffineForm& b);
+// x with the error of its logarithm as the slope of variable k, on which nothing else depends: what several factors
+// owe to it cancels where it would add up. x as it stands where it has no logarithm.
+AffineForm with_named_error(const AffineForm& x, std::size_t k);
 // x as it stands, or more or less by up to a share of itself.
 AffineForm widened(const AffineForm& x, double share);
 // alpha x + [lo, hi], which hold a function of x; `range`: all its values.

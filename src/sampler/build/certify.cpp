@@ -4,26 +4,18 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
-#include <span>
 
 #include "canonical.hpp"
 #include "check_options.hpp"
-#include "leaf_proof.hpp"
 #include "reflectree/error.hpp"
 #include "reflectree/math/random.hpp"
+#include "slab_proof.hpp"
 
 namespace reflectree {
 
 namespace {
 
 using namespace detail;
-
-// A slab with its leaves as they are sampled.
-struct SlabProof {
-  KnownRange known;
-  std::span<const PackedLeaf> leaves;
-  std::vector<LeafProof> proofs;
-};
 
 // In order of the partition; slabs of one coordinate are packed in order of the cosine.
 std::vector<SlabProof> slabs_of(const SamplerData& data, const PackedSampler& packed) {
@@ -48,8 +40,8 @@ std::vector<SlabProof> slabs_of(const SamplerData& data, const PackedSampler& pa
       known.beyond[k - 1] = {double(lo), double(hi)};
     }
     const PackedSlab& slab = packed.exact.slabs[i];
-    SlabProof proof{known, {}, {}};
-    proof.leaves = std::span(packed.exact.leaves).subspan(slab.first, slab.count);
+    const auto first = packed.exact.leaves.begin() + std::ptrdiff_t(slab.first);
+    SlabProof proof{known, {first, first + std::ptrdiff_t(slab.count)}, {}, data.exact[s]};
     proof.proofs.resize(slab.count);
     slabs.push_back(std::move(proof));
   }
@@ -77,7 +69,9 @@ void check_enclosure(const EnclosedField& field, const std::vector<SlabProof>& s
         at[k] = k == 1 || k == 2 ? double(to_unit_float(u()))
                                  : linear_mix(to_unit_double(u()), whole.lo[k], whole.hi[k]);
       }
-      check_value(field.over({at, at}, slab.known, leaf), field.at(at, slab.known, leaf));
+      ProofBox box{at, at};
+      box.lo[star_axis] = whole.lo[star_axis], box.hi[star_axis] = whole.hi[star_axis];
+      check_value(field.over(box, slab.known, leaf), field.at(at, slab.known, leaf));
     }
   }
 }
@@ -126,20 +120,17 @@ void add_loose_leaves(const SlabProof& slab, std::uint32_t index, double trials,
     double gain, rate;
     std::uint32_t leaf;
   };
+  if (!slab.proved() || !(slab.trials_before() <= trials) || slab.trials() <= trials) return;
   std::vector<Gain> gains;
-  double before = 0, after = 0;
   for (std::uint32_t k = 0; k < slab.leaves.size(); ++k) {
     const LeafProof& proof = slab.proofs[k];
-    if (!proof.proved) return;
     const double area = double(area_of(slab.leaves[k])), height = double(slab.leaves[k].height);
-    before += area * height, after += area * proof.bound;
     const double gain = area * (proof.bound - std::max(height, proof.seen * (1 + limits.tolerance)));
     if (gain > 0) gains.push_back({gain, gain / double(proof.boxes), k});
   }
-  if (!(before <= trials) || after <= trials) return;
   std::stable_sort(gains.begin(), gains.end(), [](const Gain& a, const Gain& b) { return a.rate > b.rate; });
   constexpr double safety = 1.2;
-  double missing = safety * (after - trials);
+  double missing = safety * (slab.trials() - trials);
   for (const Gain& g : gains) {
     if (missing <= 0) return;
     tasks.push_back({index, g.leaf});
@@ -152,8 +143,10 @@ constexpr const char* note_stem = "proof: ";
 // The slab's tree with the bounds that are proved, or, in a slab with open leaves, that hold at least what was
 // seen; none is lowered.
 void raise(MajorantTree& tree, const SlabProof& slab, bool certified) {
+  const bool halved = slab.leaves.size() > tree.mass.size();
+  static_cast<CanonicalTree&>(tree) = slab.tree;
   std::vector<double> volumes;
-  bool raised = false;
+  bool raised = halved;
   for (std::size_t k = 0; k < slab.leaves.size(); ++k) {
     const LeafProof& proof = slab.proofs[k];
     const double height = double(slab.leaves[k].height);
@@ -217,6 +210,13 @@ Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& o
       add_loose_leaves(slabs[s], s, options.trials, limits, tasks);
     prove(slabs, tasks, field, limits, host, 0.8f + 0.1f * float(round), 0.9f + 0.1f * float(round));
   }
+  host.parallel_for(slabs.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      SlabProof& slab = slabs[s];
+      if (slab.proved() && slab.trials_before() <= options.trials)
+        halve_leaves(slab, options.trials, field, limits);
+    }
+  });
 
   Certification out;
   SamplerData proved = data;

@@ -69,6 +69,7 @@ ProofBox EnclosedField::whole(const KnownRange& known) const {
   ProofBox box{{theta.lo, 0, 0}, {theta.hi, 1, 1}};
   const auto beyond = viewer_.unknowns(known);
   for (std::size_t i = 3; i < axes(); ++i) box.lo[i] = beyond[i - 3].lo, box.hi[i] = beyond[i - 3].hi;
+  if (divides_angle()) box.lo[star_axis] = -100, box.hi[star_axis] = 100;
   return box;
 }
 
@@ -99,12 +100,14 @@ AffineForm EnclosedField::albedo(double theta_lo, double theta_hi, const KnownRa
   return viewer_.over({AffineForm::variable(0, theta_lo, theta_hi)}, known).albedo;
 }
 
-EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known,
-                                  const PackedLeaf& leaf) const {
+ViewerForms EnclosedField::viewers_of(const ProofBox& box, const KnownRange& known) const {
   std::array<AffineForm, 2 + max_parameters> unknown{AffineForm::variable(0, box.lo[0], box.hi[0])};
   for (std::size_t i = 3; i < axes(); ++i) unknown[i - 2] = AffineForm::variable(i, box.lo[i], box.hi[i]);
-  const ViewerForms viewer = viewer_.over(unknown, known);
+  return viewer_.over(unknown, known);
+}
 
+EnclosedPoint EnclosedField::over(const ViewerForms& viewer, const ProofBox& box,
+                                  const PackedLeaf& leaf) const {
   const LeafCell<float> cell = cell_of(leaf);
   const LeafCell<AffineForm> forms{
       AffineForm(cell.x),       AffineForm(cell.y),       AffineForm(cell.width), AffineForm(cell.length),
@@ -115,13 +118,33 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known,
   at.p.x.range = intersection(at.p.x.range, {double(cell.x), double(cell.x + cell.width)});
   at.p.y.range = intersection(at.p.y.range, {double(cell.y), double(cell.y + cell.length)});
 
-  const DomainPointT<AffineForm> lifted =
-      lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, at.p);
-  EnclosedPoint out{target_over(lifted, lifted.geometry, viewer), std::nullopt, viewer.albedo * at.height};
+  DomainForms domain = viewer_.domain_of(packed_.domain, viewer);
+  RealInterval angle{box.lo[star_axis], box.hi[star_axis]};
+  if (divides_angle()) domain.star_angle = &angle;
+  if (axes() < star_axis) domain.free_variable = star_axis - 1;
+  const DomainPointT<AffineForm> lifted = lift_box(domain, viewer.wo, at.p);
+  if (!(angle.lo <= angle.hi)) return {};
+  EnclosedPoint out{target_over(lifted, lifted.geometry, viewer), std::nullopt, viewer.albedo * at.height,
+                    angle};
   if (both_sides_) {
     out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry), viewer);
   }
   return out;
+}
+
+double EnclosedField::star_angle(const ProofPoint& point, const LeafCell<float>& cell) const {
+  if (!divides_angle()) return 0;
+  const double x = double(cell.x) + double(cell.width) * point[1];
+  const double around = 0.5 * pi_v<double> * (1 - x), side = cell.y < 0 ? -1 : 1;
+  const Domain& domain = packed_.domain;
+  const Vec2<double> azimuth{std::cos(around), side * std::sin(around)};
+  const Vec2<double> along =
+      domain.kind == DomainKind::slope_star
+          ? detail::Stretched<double>{double(domain.stretch)}.along(azimuth)
+          : detail::Scaled<double>{{double(domain.scale_x), double(domain.scale_y)}}.along(azimuth);
+  const double b = std::sin(point[0]) * (along.x * std::cos(point[3]) + along.y * std::sin(point[3]));
+  const double z = std::max(std::cos(point[0]), double(min_cos_theta_o));
+  return std::asinh(b / (std::hypot(along.x, along.y) * z));
 }
 
 PointValue EnclosedField::at(const ProofPoint& point, const KnownRange& known, const PackedLeaf& leaf) const {

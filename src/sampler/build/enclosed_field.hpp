@@ -12,7 +12,7 @@
 namespace reflectree::detail {
 
 // theta_o in radians, shares of the leaf's cell along x and y, then what else is unknown of the viewer: its azimuth,
-// the coordinates of a family's parameters. As many as the field says; all others are 0.
+// the coordinates of a family's parameters. As many as the field says; all others are 0, but star_axis of boxes.
 inline constexpr std::size_t most_axes = AffineForm::variables;
 using ProofPoint = std::array<double, most_axes>;
 struct ProofBox {
@@ -23,7 +23,8 @@ struct EnclosedPoint {
   // T for both signs of wi.y: the second is missing where a square tells them apart, or f does not.
   AffineForm target;
   std::optional<AffineForm> mirrored;
-  AffineForm unit;  // albedo q: T may reach majorant times it
+  AffineForm unit;           // albedo q: T may reach majorant times it; 0 where the box is empty
+  RealInterval angle{0, 0};  // of the star, as far as the box has it
 };
 struct PointValue {
   float target = 0, unit = 0;  // of both signs the larger T
@@ -39,6 +40,11 @@ class EnclosedField {
   EnclosedField(const AnyFamily& family, const PackedSampler& packed);
 
   std::size_t axes() const { return 2 + viewer_.axes(); }
+  // Whether boxes have a range of the star's angle, too (slope_star in enclosed_map.hpp).
+  bool divides_angle() const {
+    const DomainKind kind = packed_.domain.kind;
+    return !packed_.viewer.turns && (kind == DomainKind::slope_star || kind == DomainKind::scaled_star);
+  }
   Elevations elevations(const KnownRange& known) const { return viewer_.elevations(known); }
   // All viewers of a slab, and the whole leaf.
   ProofBox whole(const KnownRange& known) const;
@@ -49,7 +55,14 @@ class EnclosedField {
     return kind == DomainKind::projected_disk || kind == DomainKind::equal_area ||
            kind == DomainKind::stretched;
   }
-  EnclosedPoint over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const;
+  // About the angle of the star.
+  double star_angle(const ProofPoint& point, const LeafCell<float>& cell) const;
+  // The viewers of a box, to be kept while boxes differ in their places alone.
+  ViewerForms viewers_of(const ProofBox& box, const KnownRange& known) const;
+  EnclosedPoint over(const ViewerForms& viewers, const ProofBox& box, const PackedLeaf& leaf) const;
+  EnclosedPoint over(const ProofBox& box, const KnownRange& known, const PackedLeaf& leaf) const {
+    return over(viewers_of(box, known), box, leaf);
+  }
   // The stored albedo, over elevations; of viewers without an azimuth.
   AffineForm albedo(double theta_lo, double theta_hi, const KnownRange& known) const;
   // As a sampler computes it.

@@ -165,6 +165,14 @@ Vec3<AffineForm> EnclosedViewer::from_axis(const Vec3<AffineForm>& w) const {
   return turned_by(w, AffineForm(c), AffineForm(s));
 }
 
+HalfSlopes EnclosedViewer::slopes_from_axis(HalfSlopes h) const {
+  h.known = h.known && !viewer_.turns && axis_is_coordinate();
+  const double c = std::abs(double(viewer_.cos_axis)), s = std::abs(double(viewer_.sin_axis));
+  if (c < s) std::swap(h.widths.x, h.widths.y), std::swap(h.azimuth.x, h.azimuth.y);
+  h.turn += std::min(c, s);
+  return h;
+}
+
 ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<AffineForm>& g,
                                                        const ViewerForms& v, ViewerImage image) const {
   if (!azimuth_) return g;
@@ -175,6 +183,7 @@ ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<Aff
   };
   ShadingGeometry<AffineForm> out = g;
   out.back = std::nullopt;
+  out.slopes = slopes_from_axis(g.slopes);
   out.wo = imaged(v.framed);
   if (viewer_.sin_axis != 0) {  // it is the framed one that rounds
     const AffineForm off = slack(8 * u * v.framed.x.range.magnitude() + 8 * u * v.framed.y.range.magnitude());

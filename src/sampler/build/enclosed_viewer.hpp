@@ -61,6 +61,7 @@ class EnclosedViewer {
  private:
   bool axis_is_coordinate() const;
   Vec3<AffineForm> from_axis(const Vec3<AffineForm>& w) const;
+  HalfSlopes slopes_from_axis(HalfSlopes h) const;
   const PackedViewer& viewer_;
   bool azimuth_;
 };

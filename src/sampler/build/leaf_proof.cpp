@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "leaf_proof.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace reflectree::detail {
@@ -11,8 +12,8 @@ namespace {
 // height and its mass are rounded.
 constexpr double margin = 0x1p-19;
 
-// Of theta_o, across the leaf, and of what else is known. Floats beside narrower boxes need not lie in them.
-constexpr double smallest_width[most_axes] = {1e-10, 0x1p-23, 0x1p-23, 1e-7, 1e-7, 1e-7};
+// Of theta_o, across the leaf, of what else is known, and of the star's angle. Floats beside narrower boxes need not lie in them.
+constexpr double smallest_width[most_axes] = {1e-10, 0x1p-23, 0x1p-23, 1e-7, 1e-7, 1e-7, 1e-3, 1};
 
 struct OpenBox {
   ProofBox box;
@@ -39,6 +40,9 @@ class Proof {
         limits_(limits),
         axes_(field.axes()),
         whole_(field.whole(known)) {
+    recent_.reserve(most_recent);
+    for (std::size_t i = 0; i < axes_; ++i) divided_.push_back(i);
+    if (field.divides_angle()) divided_.push_back(star_axis);
     out_.bound = double(leaf.height);
   }
 
@@ -69,11 +73,31 @@ class Proof {
   double proved_bound() const { return out_.bound * (1 - margin); }
   bool holds(const EnclosedPoint& p) const { return upper(p, proved_bound()) <= 0; }
 
-  EnclosedPoint enclose(const ProofBox& box) {
+  void enclose(OpenBox& b) {
     ++out_.boxes;
-    return field_.over(box, known_, leaf_);
+    b.point = field_.over(viewers_of(b.box), b.box, leaf_);
+    b.box.lo[star_axis] = b.point.angle.lo, b.box.hi[star_axis] = b.point.angle.hi;
   }
-  void open(const ProofBox& box) { boxes_.push_back({box, enclose(box)}); }
+  // Boxes that lie beside each other in the leaf have the same viewers.
+  const ViewerForms& viewers_of(const ProofBox& box) {
+    const auto is_same = [this, &box](const Viewers& v) {
+      for (std::size_t i = 0; i < axes_; ++i) {
+        if (i != 1 && i != 2 && (v.of.lo[i] != box.lo[i] || v.of.hi[i] != box.hi[i])) return false;
+      }
+      return true;
+    };
+    const auto kept = std::find_if(recent_.begin(), recent_.end(), is_same);
+    if (kept != recent_.end()) return kept->forms;
+    if (recent_.size() < most_recent) recent_.emplace_back();
+    Viewers& next = recent_[oldest_];
+    oldest_ = (oldest_ + 1) % most_recent;
+    next = {box, field_.viewers_of(box, known_)};
+    return next.forms;
+  }
+  void open(const ProofBox& box) {
+    boxes_.push_back({box, {}});
+    enclose(boxes_.back());
+  }
 
   // Values at corners and between, so that something was seen however quick the proof is.
   void look_around(const OpenBox& b) {
@@ -93,7 +117,14 @@ class Proof {
     }
     return v;
   }
-  void see(const OpenBox& b, const ProofPoint& point) { check_value(b.point, look_at(point)); }
+  // The program's angle may round to another.
+  void see(const OpenBox& b, const ProofPoint& point) {
+    constexpr double off = 0.1;
+    const PointValue value = look_at(point);
+    const double angle = field_.star_angle(point, cell_);
+    const bool inside = b.box.lo[star_axis] < angle - off && b.box.hi[star_axis] > angle + off;
+    if (!field_.divides_angle() || inside) check_value(b.point, value);
+  }
 
   // Values at the middle, and at the corner to which the difference rises.
   void look_into(const OpenBox& b) {
@@ -107,24 +138,29 @@ class Proof {
     out_.bound = std::max(out_.bound, out_.seen * (1 + tolerance_));
   }
 
-  std::array<OpenBox, 2> halves(const OpenBox& b, std::size_t axis) {
-    const double cut = 0.5 * (b.box.lo[axis] + b.box.hi[axis]);
+  static std::array<OpenBox, 2> cut(const OpenBox& b, std::size_t axis) {
     std::array<OpenBox, 2> out{b, b};
-    out[0].box.hi[axis] = out[1].box.lo[axis] = cut;
-    for (OpenBox& half : out) half.point = enclose(half.box);
+    out[0].box.hi[axis] = out[1].box.lo[axis] = 0.5 * (b.box.lo[axis] + b.box.hi[axis]);
     return out;
   }
   static bool may_halve(const OpenBox& b, std::size_t axis) {
     return b.box.hi[axis] - b.box.lo[axis] >= smallest_width[axis];
   }
 
+  // No less than the logarithm of a value.
+  static double log_top(const AffineForm& x) {
+    double by_log = x.log_middle + x.log_error;
+    for (const double s : x.log_slope) by_log += std::abs(s);
+    const double by_range = std::log(std::max(x.range.hi, 0.));
+    return x.log_error < infinity ? std::min(by_log, by_range) : by_range;
+  }
   // The logarithm of how far the ranges are from being proved.
   double excess(const EnclosedPoint& p) const {
     constexpr double most = 400;
-    const double top = p.mirrored ? std::max(p.target.range.hi, p.mirrored->range.hi) : p.target.range.hi;
-    const double ratio = top / (proved_bound() * p.unit.range.lo);
-    if (top <= 0 || ratio <= 1 || holds(p)) return 0;
-    return ratio < infinity ? std::min(std::log(ratio), most) : most;
+    const double top = p.mirrored ? std::max(log_top(p.target), log_top(*p.mirrored)) : log_top(p.target);
+    const double excess = top - std::log(proved_bound() * p.unit.range.lo);
+    if (!(excess > 0) || holds(p)) return 0;
+    return std::min(excess, most);
   }
   // So wide that the difference tells nothing yet.
   bool is_far(const OpenBox& b) const { return excess(b.point) > 0.7; }
@@ -149,14 +185,39 @@ class Proof {
                std::max(1.5 * (x1 - x0), 0.5 * layer(near_x, far_x)),
                std::max(0.5 * layer(1 - outer, 1 - inner), std::log(outer / std::max(inner, outer / 8)))};
     for (std::size_t i = 3; i < axes_; ++i) side[i] = b.box.hi[i] - b.box.lo[i];
+    // The angle does not matter until it is narrower than what the form of the other unknowns tells of it.
+    constexpr double may_matter = 2;
+    const double angle = b.box.hi[star_axis] - b.box.lo[star_axis];
+    const AffineForm& t = b.point.target;
+    if (angle > may_matter || t.slope[star_axis] != 0 || t.log_slope[star_axis] != 0) side[star_axis] = angle;
     return side;
   }
   std::size_t longest_axis(const OpenBox& b, const Sides& side) const {
     std::size_t axis = 0;
-    for (std::size_t i = 1; i < axes_; ++i) {
+    for (const std::size_t i : divided_) {
       if (may_halve(b, i) && (side[i] > side[axis] || !may_halve(b, axis))) axis = i;
     }
     return axis;
+  }
+
+  // Both halves along an axis, and what is left to prove of them: the worse half comes first, and the other is
+  // spared where that is no less than `enough` already.
+  struct Tried {
+    std::array<OpenBox, 2> halves;
+    double left = 0;
+  };
+  template <class Left>
+  Tried try_halves(const OpenBox& b, std::size_t axis, bool upper_first, const Left& left_of, double enough) {
+    Tried out{cut(b, axis)};
+    for (const std::size_t i : {std::size_t(upper_first), std::size_t(!upper_first)}) {
+      enclose(out.halves[i]);
+      out.left += left_of(out.halves[i].point);
+      if (i == std::size_t(upper_first) && out.left >= enough && enough < infinity) {
+        out.left *= 2;
+        break;
+      }
+    }
+    return out;
   }
 
   // Along the axis that brings the halves closest to being proved: tried at every third halving,
@@ -164,49 +225,56 @@ class Proof {
   void divide(const OpenBox& b) {
     constexpr int trusted = 2;
     std::size_t axis = 0;
-    for (std::size_t i = 1; i < axes_; ++i) {
+    for (const std::size_t i : divided_) {
       if (may_halve(b, i) && (b.gain[i] > b.gain[axis] || !may_halve(b, axis))) axis = i;
     }
     if (!may_halve(b, axis)) {
       smallest_.push_back(b);
       return;
     }
-    std::array<OpenBox, 2> chosen;
+    const AffineForm::Slopes rise = slopes_of_difference(b.point.target, proved_bound(), b.point.unit);
+    Tried chosen;
     if (is_far(b)) {
       // Slices that are ever thinner may gain a little each time, and never what the other axes would.
       constexpr double thinnest = 0.125;
       const Sides side = sides(b);
       axis = longest_axis(b, side);
-      chosen = halves(b, axis);
-      const auto left = [this](const std::array<OpenBox, 2>& two) {
-        return excess(two[0].point) + excess(two[1].point);
-      };
-      double least = left(chosen);
-      for (std::size_t i = 0, longest = axis; i < axes_; ++i) {
+      const auto left = [this](const EnclosedPoint& p) { return excess(p); };
+      chosen = try_halves(b, axis, rise[axis] > 0, left, infinity);
+      const std::size_t longest = axis;
+      for (const std::size_t i : divided_) {
         if (i == longest || !may_halve(b, i) || side[i] < thinnest * side[longest]) continue;
-        const std::array<OpenBox, 2> tried = halves(b, i);
-        if (left(tried) < 0.95 * least) least = left(tried), axis = i, chosen = tried;
+        const double enough = 0.95 * chosen.left;
+        const Tried tried = try_halves(b, i, rise[i] > 0, left, enough);
+        if (tried.left < enough) axis = i, chosen = tried;
       }
-      for (OpenBox& half : chosen) half.age = 0;
-    } else if (b.age > 0 && b.age <= trusted) {
-      chosen = halves(b, axis);
-      for (OpenBox& half : chosen) half.gain[axis] *= 0.25, ++half.age;
+      for (OpenBox& half : chosen.halves) half.age = 0;
     } else {
-      const double here = upper(b.point, proved_bound());
-      std::array<double, most_axes> gain{};
-      double most = -infinity;
-      for (std::size_t i = 0; i < axes_; ++i) {
-        if (!may_halve(b, i)) continue;
-        const std::array<OpenBox, 2> tried = halves(b, i);
-        const double left = std::max(upper(tried[0].point, proved_bound()), 0.) +
-                            std::max(upper(tried[1].point, proved_bound()), 0.);
-        // Infinite less infinite: nothing is known of either.
-        gain[i] = left < infinity ? (here < infinity ? here - 0.5 * left : largest_double) : 0;
-        if (gain[i] > most) most = gain[i], axis = i, chosen = tried;
+      const auto left = [this](const EnclosedPoint& p) { return std::max(upper(p, proved_bound()), 0.); };
+      if (b.age > 0 && b.age <= trusted) {
+        chosen = try_halves(b, axis, rise[axis] > 0, left, infinity);
+        for (OpenBox& half : chosen.halves) half.gain[axis] *= 0.25, ++half.age;
+      } else {
+        constexpr double thinnest = 1. / 32;
+        const Sides side = sides(b);
+        const std::size_t longest = longest_axis(b, side);
+        const double here = upper(b.point, proved_bound());
+        std::array<double, most_axes> gain{};
+        chosen.left = infinity;
+        bool any = false;
+        std::vector<std::size_t> order = divided_;  // what is foretold comes first
+        std::stable_partition(order.begin(), order.end(), [axis](std::size_t i) { return i == axis; });
+        for (const std::size_t i : order) {
+          if (!may_halve(b, i) || side[i] < thinnest * side[longest]) continue;
+          const Tried tried = try_halves(b, i, rise[i] > 0, left, any ? chosen.left : infinity);
+          // Infinite less infinite: nothing is known of either.
+          gain[i] = tried.left < infinity ? (here < infinity ? here - 0.5 * tried.left : largest_double) : 0;
+          if (!any || tried.left < chosen.left) axis = i, chosen = tried, any = true;
+        }
+        for (OpenBox& half : chosen.halves) half.gain = gain, half.gain[axis] *= 0.25, half.age = 1;
       }
-      for (OpenBox& half : chosen) half.gain = gain, half.gain[axis] *= 0.25, half.age = 1;
     }
-    for (const OpenBox& half : chosen) boxes_.push_back(half);
+    for (const OpenBox& half : chosen.halves) boxes_.push_back(half);
   }
 
   // From the best place that was seen, by steps along the axes: what the ratio is held against.
@@ -245,11 +313,19 @@ class Proof {
   LeafCell<float> cell_;
   ProofLimits limits_;
   std::size_t axes_;
+  std::vector<std::size_t> divided_;
   ProofBox whole_;
   double tolerance_ = 0;
   LeafProof out_;
   ProofPoint best_{};
   std::vector<OpenBox> boxes_, smallest_;
+  static constexpr std::size_t most_recent = 16;
+  struct Viewers {
+    ProofBox of;
+    ViewerForms forms;
+  };
+  std::vector<Viewers> recent_;
+  std::size_t oldest_ = 0;
 };
 
 }  // namespace

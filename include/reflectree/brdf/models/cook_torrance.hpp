@@ -15,12 +15,16 @@ T beckmann_distribution(Vec3<T> wh, T alpha, const Exponential& exponential) {
   const T a2 = sqr(alpha);
   return exponential(-sin2_theta(wh) / (a2 * hz2)) / (pi_v<T> * a2 * sqr(hz2));
 }
-// The same with two widths.
+// The same with two widths; sin2: sin2_by_widths of the half vector.
+template <class T, class N>
+T beckmann_distribution(T sin2, T cos_theta_h, WidthsOf<N> alpha) {
+  const T hz2 = max(sqr(cos_theta_h), T(1e-18));
+  const T slope2 = sin2 / hz2;
+  return exp(-slope2) / (pi_v<T> * T(alpha.x) * T(alpha.y) * sqr(hz2));
+}
 template <class T, class N>
 T beckmann_distribution(Vec3<T> wh, WidthsOf<N> alpha) {
-  const T hz2 = max(sqr(wh.z), T(1e-18));
-  const T slope2 = (sqr(wh.x / T(alpha.x)) + sqr(wh.y / T(alpha.y))) / hz2;
-  return exp(-slope2) / (pi_v<T> * T(alpha.x) * T(alpha.y) * sqr(hz2));
+  return beckmann_distribution(sin2_by_widths(wh, alpha), wh.z, alpha);
 }
 template <class T>
 T beckmann_distribution(Vec3<T> wh, T alpha) {
@@ -49,7 +53,7 @@ struct CookTorranceOf {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T d = alpha.round() ? beckmann_distribution(g.wh, T(alpha.x))
-                              : beckmann_distribution(in_frame_of(phi, g.wh), alpha);
+                              : beckmann_distribution(sin2_by_widths(g, alpha, phi), g.wh.z, alpha);
     const T lobe = d * v_cavity_visibility(g);
     return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * (as_rgb<T>(ks) * fresnel_schlick(f0, g.cos_theta_d));
   }

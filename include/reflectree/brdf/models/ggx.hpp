@@ -21,11 +21,15 @@ T ggx_distribution(Vec3<T> wh, T alpha) {
   return sqr(alpha) / (pi_v<T> * s * s);
 }
 
-// The same with two widths; Heitz 2014, eq. 85.
+// The same with two widths; Heitz 2014, eq. 85. sin2: sin2_by_widths of the half vector.
+template <class T, class N>
+T ggx_distribution(T sin2, T cos_theta_h, WidthsOf<N> alpha) {
+  const T s = sin2 + sqr(cos_theta_h);
+  return T(1) / (pi_v<T> * T(alpha.x) * T(alpha.y) * s * s);
+}
 template <class T, class N>
 T ggx_distribution(Vec3<T> wh, WidthsOf<N> alpha) {
-  const T s = sqr(wh.x / T(alpha.x)) + sqr(wh.y / T(alpha.y)) + sqr(wh.z);
-  return T(1) / (pi_v<T> * T(alpha.x) * T(alpha.y) * s * s);
+  return ggx_distribution(sin2_by_widths(wh, alpha), wh.z, alpha);
 }
 
 // Smith's masking of one direction, 2 / (1 + sqrt(1 + alpha^2 tan^2 theta)); Walter et al. 2007, eq. 34.
@@ -61,7 +65,7 @@ struct GgxLobe {
 template <class T, class N>
 REFLECTREE_NOINLINE GgxLobe<T> ggx_elliptic_lobe(const ShadingGeometry<T>& g, WidthsOf<N> alpha,
                                                  const Azimuth& phi) {
-  return {ggx_distribution(in_frame_of(phi, g.wh), alpha),
+  return {ggx_distribution(sin2_by_widths(g, alpha, phi), g.wh.z, alpha),
           ggx_visibility(in_frame_of(phi, g.wo), in_frame_of(phi, g.wi), alpha)};
 }
 template <class T, class N>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reflectree/brdf/material/description.hpp"
+#include "reflectree/brdf/models/widths.hpp"
 
 namespace reflectree {
 
@@ -19,8 +20,7 @@ struct WardOf {
   template <class T>
   RgbT<T> operator()(const ShadingGeometry<T>& g) const {
     const T hz2 = max(sqr(g.cos_theta_h), T(1e-18));  // keeps hz^4 a normal float
-    const Vec3<T> wh = in_frame_of(phi, g.wh);
-    const T slope2 = (sqr(wh.x / T(alpha_x)) + sqr(wh.y / T(alpha_y))) / hz2;
+    const T slope2 = sin2_by_widths(g, WidthsOf<N>(alpha_x, alpha_y), phi) / hz2;
     const T scale = T(1) / (T(4) * pi_v<T> * T(alpha_x) * T(alpha_y));
     const T lobe = scale * exp(-slope2) / (sqr(g.cos_theta_d) * sqr(hz2));
     return T(1) / pi_v<T> * as_rgb<T>(kd) + lobe * as_rgb<T>(ks);

@@ -36,4 +36,19 @@ Vec3<T> in_frame_of(const Azimuth& azimuth, const Vec3<T>& w) {
   return {c * w.x + s * w.y, c * w.y - s * w.x, w.z};
 }
 
+// (x / alpha_x)^2 + (y / alpha_y)^2; of the half vector in the frame of the model. (Boxes know more of it:
+// enclosure.hpp.)
+template <class T, class N>
+T sin2_by_widths(const Vec3<T>& w, const WidthsOf<N>& alpha) {
+  return sqr(w.x / T(alpha.x)) + sqr(w.y / T(alpha.y));
+}
+template <class T, class N>
+T sin2_by_widths(const ShadingGeometry<T>& g, const WidthsOf<N>& alpha, const Azimuth& phi) {
+  const T sin2 = sin2_by_widths(in_frame_of(phi, g.wh), alpha);
+  if constexpr (requires { g.slopes; }) {
+    if (phi.degrees == 0) return sin2_of_slopes(g, T(alpha.x), T(alpha.y), sin2);
+  }
+  return sin2;
+}
+
 }  // namespace reflectree

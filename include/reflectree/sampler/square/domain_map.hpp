@@ -20,6 +20,12 @@ REFLECTREE_INLINE float lower_azimuth(Direction w) {
   return w.x < 0 ? -x : x;
 }
 
+// What a domain knows of its map beyond the formula: boxes do (enclosed_map.hpp).
+template <class D, class Map>
+REFLECTREE_INLINE const Map& map_of(const D&, const Map& map) {
+  return map;
+}
+
 // lift() for floats, lanes, or boxes, whose domain may have widths of its own (enclosed_map.hpp).
 template <class T, class D>
 REFLECTREE_INLINE DomainPointT<T> lift_point(const D& domain, Vec3<T> wo, Vec2<T> p) {
@@ -37,9 +43,9 @@ REFLECTREE_INLINE DomainPointT<T> lift_point(const D& domain, Vec3<T> wo, Vec2<T
     case DomainKind::normal_vector:
       return lift_mirror_vector(wo, Vec2<T>{T(0), T(1)}, azimuth, y);
     case DomainKind::slope_star:
-      return lift_slopes(wo, Stretched<T>{T(domain.stretch)}, azimuth, y);
+      return lift_slopes(wo, map_of(domain, Stretched<T>{T(domain.stretch)}), azimuth, y);
     case DomainKind::scaled_star:
-      return lift_slopes(wo, Scaled<T>{{T(domain.scale_x), T(domain.scale_y)}}, azimuth, y);
+      return lift_slopes(wo, map_of(domain, Scaled<T>{{T(domain.scale_x), T(domain.scale_y)}}), azimuth, y);
     case DomainKind::projected_disk: {
       const T r = sqrt(y), z = max(sqrt(T(1) - y), T(min_cos_theta_i));
       return {shading_geometry(wo, Vec3<T>{r * azimuth.x, r * azimuth.y, z}), T(pi)};

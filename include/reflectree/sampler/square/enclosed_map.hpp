@@ -8,6 +8,21 @@
 
 namespace reflectree {
 
+// Of the variables of a form: the angle of the star (star_of), divided as unknowns are; the error of d.
+inline constexpr std::size_t star_axis = 6, error_of_d = 7;
+namespace detail {
+template <>
+struct SlopeStar<AffineForm> {
+  AffineForm p, c;
+  std::size_t error_of_cosine = 0;  // a variable for that of wi.z; 0: none is free
+};
+template <class Map>
+struct StarOfBox : Map {
+  RealInterval* angle;
+  std::size_t free_variable;
+};
+}  // namespace detail
+
 // projected_area / cos theta_i, too, up to the same roundings: some maps and functions divide what the other
 // multiplies, and cos theta_i is noise at the rim.
 template <>
@@ -69,12 +84,36 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const AffineForm& z,
 // The star of slopes likewise: c / p is q z / l where b > 0, and l / z where b < 0. Both are
 //   sqrt(q) exp(-asinh(b / (sqrt(q) z))),
 // which has no kink where b changes its sign, and a logarithm that hardly bends.
-inline detail::SlopeStar<AffineForm> slope_star(const Vec3<AffineForm>& wo, const Vec2<AffineForm>& along) {
+// Where wo has an azimuth of its own, the layer in which b changes its sign lies across the box: boxes as thin as wo.z
+// would be needed along all of it. There the angle h = asinh(b / (sqrt(q) z)) may be an unknown of its own, whose
+// range is divided: c / p = sqrt(q) e^-h of the numbers that the program has. `angle` comes with those that are
+// meant, and goes with those of them that the box has; the unknown stands in where it is less than the error.
+inline detail::SlopeStar<AffineForm> slope_star(const Vec3<AffineForm>& wo, const Vec2<AffineForm>& along,
+                                                RealInterval* angle = nullptr) {
   const AffineForm q = sqr(along.x) + sqr(along.y), b = along.x * wo.x + along.y * wo.y, width = sqrt(q);
   const AffineForm qz = q * wo.z, l = sqrt(sqr(b) + qz * wo.z) + abs(b);
-  const AffineForm c = by_sign(b, qz / l, l / wo.z), smooth = width * exp(-asinh(b / (width * wo.z)));
-  return {AffineForm(1), widened(narrower(c, smooth), 8 * 0x1p-24)};
+  const AffineForm h = asinh(b / (width * wo.z));
+  AffineForm c = narrower(by_sign(b, qz / l, l / wo.z), width * exp(-h));
+  if (angle) {
+    constexpr double off = 1e-6;  // roundings of c
+    *angle = intersection(*angle, {h.range.lo - off, h.range.hi + off});
+    if (!(angle->lo <= angle->hi)) return {AffineForm(1), c};
+    const AffineForm known = width * exp(-AffineForm::variable(star_axis, angle->lo, angle->hi));
+    if (!(c.log_error <= 0.5 * (angle->hi - angle->lo))) c = known;
+    const RealInterval range = intersection(c.range, known.range);
+    if (range.lo <= range.hi) c.range = range;
+  }
+  return {AffineForm(1), widened(c, 8 * 0x1p-24)};
 }
+namespace detail {
+template <class Map>
+SlopeStar<AffineForm> star_of(const StarOfBox<Map>& map, const Vec3<AffineForm>& wo,
+                              const Vec2<AffineForm>& along) {
+  SlopeStar<AffineForm> star = slope_star(wo, along, map.angle);
+  star.error_of_cosine = map.free_variable;
+  return star;
+}
+}  // namespace detail
 // 1 / d = (1 - y) + c y = c (1 + (1 - y) (1 / c - 1)), the latter near the rim. What the map adds and takes away
 // rounds by less than 4 u max(1, c).
 inline AffineForm radius_per_y(const detail::SlopeStar<AffineForm>& star, const AffineForm& y) {
@@ -84,12 +123,29 @@ inline AffineForm radius_per_y(const detail::SlopeStar<AffineForm>& star, const 
   const AffineForm plain = one / (one + (star.c - one) * y);
   const AffineForm inside = one / (rest + star.c * y + slack);
   const AffineForm by_rim = one / (star.c * (one + rest * (one / star.c - one)) + slack);
-  return narrower(narrower(plain, inside), by_rim);
+  return with_named_error(narrower(narrower(plain, inside), by_rim), error_of_d);
 }
 // Both squares are r^2 q; what they round is relative.
 inline AffineForm squared_normal(const Vec2<AffineForm>&, const Vec2<AffineForm>& along,
                                  const AffineForm& r) {
   return widened(AffineForm(1) + (sqr(along.x) + sqr(along.y)) * sqr(r), 8 * 0x1p-24);
+}
+// With q and b of slope_star_map.hpp b = z (q R - 1 / R) / 2, and so wo.n = z + b r, in which terms may cancel, is
+//   z / 2 (1 + (1 - r / R) + q r R),
+// in which none do. What rounds: as below, where 1 - r / R = d (1 - y), too.
+inline AffineForm cosine_to_normal(const Vec3<AffineForm>& wo, const Vec2<AffineForm>& tau,
+                                   const detail::SlopeStar<AffineForm>& star, const Vec2<AffineForm>& along,
+                                   const AffineForm& y, const AffineForm& d) {
+  constexpr double u = 0x1p-24;
+  const AffineForm plain = wo.x * tau.x + wo.y * tau.y + wo.z, r = y * d, one(1);
+  const double off = 24 * u * std::max(1., d.range.hi);
+  const double terms = r.range.hi * ((along.x * wo.x).range.magnitude() + (along.y * wo.y).range.magnitude());
+  const double lost = 16 * u * (terms + wo.z.range.hi);
+  if (!(off < 1) || !(lost < 1)) return plain;
+  const AffineForm to_rim = d * (one - y) + AffineForm::anything_in({-off, off});
+  const AffineForm sum = one + to_rim + (sqr(along.x) + sqr(along.y)) * (r * (star.p / star.c));
+  const AffineForm other = widened(AffineForm(0.5) * wo.z * sum, 64 * u);
+  return narrower(plain, other + AffineForm::anything_in({-lost, lost}));
 }
 // With q and b of slope_star_map.hpp and the roots R and -1 / (q R) of z + 2 b r - q z r^2,
 //   (2 (wo.n) - z (n.n)) / (n.n) = z (1 - r / R) (1 + q R r) / (1 + q r^2).
@@ -109,7 +165,7 @@ inline AffineForm reflected_cosine(const AffineForm& twice, const Vec3<AffineFor
   AffineForm out =
       narrower(plain, wo.z * to_rim * (beyond * cos2_theta_h) + AffineForm::anything_in({-lost, lost}));
   out.range.hi = std::min(out.range.hi, 1 + 4 * length_tolerance);
-  return out;
+  return star.error_of_cosine > 0 ? with_named_error(out, star.error_of_cosine) : out;
 }
 
 // A direction that a domain returns is of unit length, and so is a half vector: what large boxes know of them.
@@ -134,7 +190,13 @@ struct DomainForms {
   DomainKind kind;
   float exponent, stretch;
   AffineForm scale_x, scale_y;
+  RealInterval* star_angle = nullptr;  // of slope_star()
+  std::size_t free_variable = 0;
 };
+template <class Map>
+detail::StarOfBox<Map> map_of(const DomainForms& domain, const Map& map) {
+  return {map, domain.star_angle, domain.free_variable};
+}
 template <class D>
 DomainPointT<AffineForm> lift_box(const D& domain, const Vec3<AffineForm>& wo, const Vec2<AffineForm>& p) {
   if (domain.kind != DomainKind::back_vector) {

@@ -53,6 +53,12 @@ template <class T>
 REFLECTREE_INLINE T squared_normal(const Vec2<T>& tau, const Vec2<T>&, T) {
   return T(1) + tau.x * tau.x + tau.y * tau.y;
 }
+// wo.n, n = (tau, 1).
+template <class T>
+REFLECTREE_INLINE T cosine_to_normal(const Vec3<T>& wo, const Vec2<T>& tau, const SlopeStar<T>&,
+                                     const Vec2<T>&, T, T) {
+  return wo.x * tau.x + wo.y * tau.y + wo.z;
+}
 // cos theta_i = 2 (wo.n) / (n.n) - cos theta_o of a place of the star. Where nothing is known but a box of
 // places (enclosed_map.hpp) the other arguments serve.
 template <class T>
@@ -61,21 +67,28 @@ REFLECTREE_INLINE T reflected_cosine(T twice, const Vec3<T>& wo, const SlopeStar
   return twice - wo.z;
 }
 template <class T, class Map>
+REFLECTREE_INLINE SlopeStar<T> star_of(const Map&, const Vec3<T>& wo, const Vec2<T>& along) {
+  return slope_star(wo, along);
+}
+template <class T, class Map>
 REFLECTREE_INLINE DomainPointT<T> lift_slopes(Vec3<T> wo, const Map& map, Vec2<T> azimuth, T y) {
   y = max(y, T(1e-12f));
   const Vec2<T> along = map.along(azimuth);
-  const SlopeStar<T> star = slope_star(wo, along);
+  const SlopeStar<T> star = star_of(map, wo, along);
   const T d = radius_per_y(star, y), r = y * d;
   const Vec2<T> tau{r * along.x, r * along.y};
   const T nn = squared_normal(tau, along, r);
-  const T wo_n = max(wo.x * tau.x + wo.y * tau.y + wo.z, T(min_cos_theta_i));
+  const T wo_n = max(cosine_to_normal(wo, tau, star, along, y, d), T(min_cos_theta_i));
   const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
   const Vec3<T> wi{twice * tau.x - wo.x, twice * tau.y - wo.y,
                    max(reflected_cosine(twice, wo, star, along, y, d, cos2_theta_h), T(min_cos_theta_i))};
   const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (map.area(r) * d * d);
   const T cos_theta_h = sqrt(cos2_theta_h);
   const Vec3<T> wh{tau.x * cos_theta_h, tau.y * cos_theta_h, cos_theta_h};
-  return {{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
+  DomainPointT<T> out{{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
+  if constexpr (requires { out.geometry.slopes; })
+    out.geometry.slopes = {true, r, map.along(Vec2<T>{T(1), T(1)}), azimuth};
+  return out;
 }
 
 // The azimuth's direction u in the square, and |y|.
