@@ -23,12 +23,20 @@ struct BackVector {
 struct HalfAzimuth {
   AffineForm cosine, sine, angle;
 };
+// Of viewers whose azimuth matters what directions do not tell at the normal, and where azimuths leap: radians, of any
+// branch, of the floats; and wi where wo is turned to azimuth 0, up to 16 roundings, where the map has it there.
+struct KnownAzimuths {
+  AffineForm of_wo;
+  std::optional<AffineForm> of_wh = std::nullopt;
+  std::optional<Vec3<AffineForm>> wi = std::nullopt;
+};
 template <>
 struct ShadingGeometry<AffineForm> {
   Vec3<AffineForm> wo, wi, wh;
   AffineForm cos_theta_o, cos_theta_i, cos_theta_h, cos_theta_d;
   std::optional<BackVector> back = std::nullopt;
   std::optional<HalfAzimuth> azimuth_h = std::nullopt;
+  std::optional<KnownAzimuths> azimuths = std::nullopt;
 };
 
 // The azimuth that the map told, while g is in the frame in which it told it: a geometry that was turned or mirrored

@@ -120,6 +120,10 @@ EnclosedPoint EnclosedField::over(const ProofBox& box, const KnownRange& known,
   EnclosedPoint out{target_over(lifted, lifted.geometry, viewer), std::nullopt, viewer.albedo * at.height};
   if (both_sides_) {
     out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry), viewer);
+  } else if (at.p.y.range.lo < 0 && at.p.y.range.hi == 0) {  // the pole itself is on the other side
+    const DomainPointT<AffineForm> pole =
+        lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, {at.p.x, AffineForm(0)});
+    out.mirrored = target_over(pole, pole.geometry, viewer);
   }
   return out;
 }
