@@ -39,8 +39,8 @@ Seen compare_tables(const AnyBrdf& told, const AnyBrdf& f, bool tells, int boxes
   return compare(
       [&](const Box& box, ShadingGeometry<AffineForm> g) {
         const AffineForm rounded = AffineForm::anything_in({off - 3e-7, off + 3e-7});
-        if (tells) g.azimuths = KnownAzimuths{box.variable(3) + rounded};
-        if (tells && g.azimuth_h) g.azimuths->of_wh = g.azimuth_h->angle;
+        if (tells) g.viewer = KnownViewer{widened(sin(box.variable(0)), 1e-6), box.variable(3) + rounded};
+        if (tells && g.azimuth_h) g.viewer->azimuth_h = g.azimuth_h->angle;
         return enclosure(g).g;
       },
       [&](const Point& at, const ShadingGeometry<float>& g) {

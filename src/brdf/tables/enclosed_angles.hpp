@@ -31,12 +31,16 @@ inline AffineForm azimuth_of(const AffineForm& y, const AffineForm& x) {
   return AffineForm::anything_in({-pi_v<double> * (1 + angle_share), pi_v<double> * (1 + angle_share)});
 }
 
+inline AffineForm sin_theta_o(const ShadingGeometry<AffineForm>& g) {
+  if (g.viewer) return g.viewer->sin_theta_o;
+  return g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0 ? g.wo.x : sqrt(sin2_theta(g.wo));
+}
 // Azimuths in the frame of g, of any branch.
 inline AffineForm azimuth_of_wo(const ShadingGeometry<AffineForm>& g) {
-  return g.azimuths ? g.azimuths->of_wo : azimuth_of(g.wo.y, g.wo.x);
+  return g.viewer ? g.viewer->azimuth : azimuth_of(g.wo.y, g.wo.x);
 }
 inline AffineForm azimuth_of_wh(const ShadingGeometry<AffineForm>& g) {
-  return g.azimuths && g.azimuths->of_wh ? *g.azimuths->of_wh : azimuth_of(g.wh.y, g.wh.x);
+  return g.viewer && g.viewer->azimuth_h ? *g.viewer->azimuth_h : azimuth_of(g.wh.y, g.wh.x);
 }
 
 inline AffineForm shifted(const AffineForm& x, double by) {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bent_pieces.hpp"
+#include "channel_reduction.hpp"
 #include "enclosed_angles.hpp"
 #include "reflectree/brdf/tables/enclosed_difference.hpp"
 #include "reflectree/math/affine_grid.hpp"
@@ -68,13 +69,23 @@ RgbT<AffineForm> either(const RgbT<AffineForm>& a, const RgbT<AffineForm>& b) {
 template <class Table, std::size_t known>
 class RglEnclosure final : public BrdfEnclosure {
  public:
-  explicit RglEnclosure(const Table& table) : slices_{table} {}
+  explicit RglEnclosure(const Table& table) : slices_{table} {
+    if (reduces_channels()) norms_ = norms_of_nodes();
+  }
 
   RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
     return value(g, one_by_cosine(g));
   }
   std::optional<RgbT<AffineForm>> times_cosine(const ShadingGeometry<AffineForm>& g) const override {
     return value(g, cosine_by_itself(g));
+  }
+  bool reduces_channels() const override { return slices_.channels() != 1 && slices_.channels() != 3; }
+  AffineForm reduced(const Target& target, const ShadingGeometry<AffineForm>& g,
+                     bool times_cosine) const override {
+    const AffineForm factor = times_cosine ? cosine_by_itself(g) : one_by_cosine(g);
+    return product(g, factor, [&](const KnownForms& wo, const Vec2<AffineForm>& at, const AffineForm& scale) {
+      return scale * this->scalar(colours(wo, at), target);
+    });
   }
   // What look-ups take into the part of the circle that is tabulated. Viewers on its border, for whom images differ, are
   // enclosed as both (for_each_place).
@@ -102,7 +113,11 @@ class RglEnclosure final : public BrdfEnclosure {
       const Pieces pieces = colours(wo, at);
       const AffineForm zero(0.f);
       const auto of = [&](int channel) { return max(scale * this->channel(pieces, channel), zero); };
-      if (slices_.channels() < 3) {
+      if (reduces_channels()) {
+        const AffineForm any = AffineForm::anything_in({0, detail::infinity});
+        return RgbT<AffineForm>{any, any, any};
+      }
+      if (slices_.channels() == 1) {
         const AffineForm grey = of(0);
         return RgbT<AffineForm>{grey, grey, grey};
       }
@@ -113,9 +128,7 @@ class RglEnclosure final : public BrdfEnclosure {
   // finish(wo, place of the colours, factor D / (4 sigma)), of all places of wo and wh in the tables.
   template <class Finish>
   auto product(const ShadingGeometry<AffineForm>& g, const AffineForm& factor, const Finish& finish) const {
-    const AffineForm sin_o =
-        g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0 ? g.wo.x : sqrt(sin2_theta(g.wo));
-    const AffineForm theta_o = polar_angle(sin_o, g.cos_theta_o);
+    const AffineForm theta_o = polar_angle(sin_theta_o(g), g.cos_theta_o);
     const AffineForm theta_h = polar_angle(detail::half_frame(g).sin_theta_h, g.cos_theta_h);
     const AffineForm of_theta_o = elevation_to_u(theta_o), of_theta_h = elevation_to_u(theta_h);
     const auto at = [&](const KnownForms& wo, const AffineForm& v_of_wo, const AffineForm& phi_h) {
@@ -236,7 +249,40 @@ class RglEnclosure final : public BrdfEnclosure {
     return pieces.interpolated_or_ranged([&](const Node& n) { return colour(n)[channel]; }, 32 * u);
   }
 
+  // Of many channels the target of all.
+  AffineForm scalar(const Pieces& pieces, const Target& target) const {
+    const int channels = slices_.channels();
+    const double share = (40 + 2 * channels) * u;
+    if (pieces.touches_few()) {
+      ChannelReduction reduction(target, channels, [this](const Node& n) { return colour(n); });
+      return max(pieces.reduced(reduction, share), AffineForm(0.f));
+    }
+    // No target is more than the norm, which is largest at a node.
+    const AffineForm norm = pieces.interpolated_or_ranged(
+        [&](const Node& n) { return norms_[std::size_t(colour(n) - slices_.colour(0, 0, 0)) / stride()]; },
+        share);
+    return AffineForm::anything_in({0, double(target.scale) * norm.range.hi});
+  }
+  std::vector<float> norms_of_nodes() const {
+    const GridSize size = slices_.colour_size();
+    std::size_t slices = 1;
+    for (std::size_t a = 0; a < known; ++a) slices *= nodes(a).size();
+    std::vector<float> out;
+    for (int s = 0; s < int(slices); ++s) {
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          double squares = 0;
+          for (int c = 0; c < slices_.channels(); ++c) squares += sqr(double(slices_.colour(s, y, x)[c]));
+          out.push_back(float(std::sqrt(squares) * (1 + 2 * u)));
+        }
+      }
+    }
+    return out;
+  }
+  std::size_t stride() const { return std::size_t(slices_.colour(0, 0, 1) - slices_.colour(0, 0, 0)); }
+
   RglSlices<Table> slices_;
+  std::vector<float> norms_;  // of many channels, node by node
 };
 
 // Many cells, as where the azimuth of wh may be any. Between nodes of wo and of y the place along x is a quotient of two

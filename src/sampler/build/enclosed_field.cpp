@@ -76,6 +76,10 @@ AffineForm EnclosedField::value_over(const DomainPointT<AffineForm>& point,
                                      const ShadingGeometry<AffineForm>& g, const ViewerForms& v) const {
   if (family_)
     return reduced(packed_.target, (*family_enclosure_)(g, v.parameters), channels_) * point.projected_area;
+  if (enclosure_->reduces_channels()) {
+    const AffineForm t = enclosure_->reduced(packed_.target, g, point.area_by_cosine.has_value());
+    return point.area_by_cosine ? widened(t * *point.area_by_cosine, 0x1p-19) : t * point.projected_area;
+  }
   if (point.area_by_cosine) {
     // The order of the products is another one: 32 roundings.
     if (const auto f_cos = enclosure_->times_cosine(g))

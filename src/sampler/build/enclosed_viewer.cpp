@@ -81,7 +81,7 @@ ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters
   const AffineForm c =
       clipped(widened(cos(unknown[0]), length_tolerance), {double(known.lo), double(known.hi)});
   const AffineForm s = widened(sin(unknown[0]), length_tolerance);
-  v.wo = v.framed = {s, AffineForm(0), c};
+  v.wo = v.framed = {s, AffineForm(0), c}, v.sine = s;
   std::size_t next = 1, slot = 0;
   AffineForm phi_o;
   if (azimuth_) {
@@ -166,7 +166,7 @@ Vec3<AffineForm> EnclosedViewer::from_axis(const Vec3<AffineForm>& w) const {
 }
 
 // g in the frame of the domain. Turns by an axis or by phi_o round: azimuths err by 8 u or so.
-KnownAzimuths EnclosedViewer::azimuths_of(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
+KnownViewer EnclosedViewer::known_of(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
                                           ViewerImage image) const {
   constexpr double rounding = 2e-6;
   const bool framed = viewer_.sin_axis == 0 && viewer_.cos_axis > 0;
@@ -176,9 +176,9 @@ KnownAzimuths EnclosedViewer::azimuths_of(const ShadingGeometry<AffineForm>& g, 
     const AffineForm a = image.mirrored ? -angle : angle;
     return linear_enclosure(a, 1, {by - off, by + off}, {a.range.lo + by - off, a.range.hi + by + off});
   };
-  KnownAzimuths out{imaged(v.phi, !framed)};
+  KnownViewer out{widened(v.sine, 8 * u), imaged(v.phi, !framed)};
   const HalfAzimuth* half = viewer_.turns ? known_azimuth(g) : g.azimuth_h ? &*g.azimuth_h : nullptr;
-  if (half) out.of_wh = imaged(viewer_.turns ? half->angle + v.phi : half->angle, viewer_.turns || !framed);
+  if (half) out.azimuth_h = imaged(viewer_.turns ? half->angle + v.phi : half->angle, viewer_.turns || !framed);
   if (viewer_.turns) out.wi = Vec3<AffineForm>{g.wi.x, image.mirrored ? -g.wi.y : g.wi.y, g.wi.z};
   return out;
 }
@@ -192,7 +192,7 @@ ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<Aff
     return from_axis(w);
   };
   ShadingGeometry<AffineForm> out = g;
-  out.back = std::nullopt, out.azimuths = azimuths_of(g, v, image);
+  out.back = std::nullopt, out.viewer = known_of(g, v, image);
   out.wo = imaged(v.framed);
   if (viewer_.sin_axis != 0) {  // it is the framed one that rounds
     const AffineForm off = slack(8 * u * v.framed.x.range.magnitude() + 8 * u * v.framed.y.range.magnitude());
