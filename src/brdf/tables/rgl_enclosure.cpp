@@ -5,61 +5,20 @@
 
 #include "bent_pieces.hpp"
 #include "channel_reduction.hpp"
-#include "enclosed_angles.hpp"
 #include "reflectree/brdf/tables/enclosed_difference.hpp"
 #include "reflectree/math/affine_grid.hpp"
+#include "rgl_places.hpp"
 #include "rgl_slices.hpp"
 
 namespace reflectree {
 
 using namespace bent_pieces;
-using namespace enclosed_angles;
+using namespace rgl_places;
 
 namespace {
 
-constexpr double u = 0x1p-24;
 // Smaller ones count as this.
 constexpr float least_cosine = 1e-6f;
-
-AffineForm elevation_to_u(const AffineForm& theta) { return sqrt(theta * AffineForm(2.f / pi)); }
-AffineForm azimuth_to_v(const AffineForm& phi) { return phi * AffineForm(0.5f / pi) + AffineForm(0.5f); }
-// A position on a grid over [0, 1], in cells.
-AffineForm located(const AffineForm& x, int nodes) {
-  return within(within(x, 0, 1) * AffineForm(float(nodes - 1)), 0, nodes - 1);
-}
-
-// The azimuth of wh relative to that of wo. In the plane of wo y = 0 the sign of wh.y is that of wi.y, and no map
-// returns wi.y = 0 beyond the pole (the cosine of cos_sin_half is positive).
-AffineForm relative_azimuth(const ShadingGeometry<AffineForm>& g) {
-  const bool plane = g.wo.y.range.magnitude() == 0;
-  if (const HalfAzimuth* known = known_azimuth(g)) return known->angle;
-  AffineForm y = g.wh.y, x = g.wh.x;
-  if (!plane) y = g.wo.x * g.wh.y - g.wo.y * g.wh.x, x = g.wo.x * g.wh.x + g.wo.y * g.wh.y;
-  if (plane && g.wi.y.range.lo >= 0) return angle_above(within(y, 0, 2), x);
-  if (plane && g.wi.y.range.hi <= 0) return -angle_above(within(-y, 0, 2), x);
-  if (x.range.lo > 0) return atan2(y, x);
-  return AffineForm::anything_in({-pi_v<double>, pi_v<double>});
-}
-
-// A table that is linear between nodes, at a place of the square.
-AffineForm interpolated(const SquareNodes& table, const AffineForm& of_u, const AffineForm& of_v) {
-  const GridSize size = table.size;
-  if (size.height > 1) {
-    const GridPieces<2, 100> pieces({GridAxis{size.width}, GridAxis{size.height}},
-                                    {located(of_u, size.width), located(of_v, size.height)});
-    return pieces.interpolated_or_ranged(
-        [&](const std::array<int, 2>& i) { return table.values[i[1] * size.width + i[0]]; }, 16 * u);
-  }
-  const GridPieces<1> pieces({GridAxis{size.width}}, {located(of_u, size.width)});
-  const auto value = [&](const std::array<int, 1>& i) { return table.values[i[0]]; };
-  if (pieces.are_few()) return pieces.interpolated(value, 8 * u);
-  RealInterval range{detail::infinity, -detail::infinity};
-  for (int i = pieces.first()[0]; i <= pieces.last()[0]; ++i) {
-    const auto v = double(table.values[i]);
-    range = hull(range, RealInterval(v, v));
-  }
-  return widened(AffineForm::anything_in(range), 8 * u);
-}
 
 RgbT<AffineForm> either(const RgbT<AffineForm>& a, const RgbT<AffineForm>& b) {
   return {either(a.r, b.r), either(a.g, b.g), either(a.b, b.b)};
@@ -310,18 +269,15 @@ Vec2<AffineForm> RglEnclosure<Table, known>::unwarped_range(const KnownForms& wo
         const double a = at - i, p0 = node.pdf, p1 = slices_.warp(slice, j, i + 1).pdf;
         return node.cdf + a * (p0 + 0.5 * a * (p1 - p0));
       };
-      if (!(mass > 0)) return false;
-      sx = hull(sx, {along(x.lo) / mass, along(x.hi) / mass});
+      // Where nothing is visible the row adds nothing to the means, and alone it leads to 0.
+      sx = hull(sx, mass > 0 ? RealInterval(along(x.lo) / mass, along(x.hi) / mass) : RealInterval(0, 0));
     }
-    return true;
   };
   const auto [first, last] = touched(0, wo);
   std::pair<int, int> rows{0, 0};
   if constexpr (known == 2) rows = touched(1, wo);
   for (int p = rows.first; p <= rows.second; ++p) {
-    for (int t = first; t <= last; ++t) {
-      if (!add(slice(t, p))) return {AffineForm::anything_in({0, 1}), AffineForm::anything_in({0, 1})};
-    }
+    for (int t = first; t <= last; ++t) add(slice(t, p));
   }
   constexpr double share = 64 * u;
   const auto rounded = [](RealInterval r) {
@@ -396,7 +352,7 @@ Vec2<AffineForm> RglEnclosure<Table, known>::unwarped(const KnownForms& wo, cons
   flat[known] = &one, flat_at[known] = AffineForm(0);
   const AffineForm sy = enclosed(flat, flat_at, below, share);
   const AffineForm m = enclosed(flat, flat_at, mass, share);
-  if (!(m.range.lo > 0)) return {any, within(sy, 0, 2)};
+  if (!(m.range.lo > 0)) return {unwarped_range(wo, x.range, y.range).x, within(sy, 0, 2)};
   return {enclosed(parts, at, along, share) / m, sy};
 }
 
