@@ -9,6 +9,7 @@
 
 #include "reflectree/brdf/any_brdf.hpp"
 #include "reflectree/brdf/parameter.hpp"
+#include "reflectree/brdf/target.hpp"
 #include "reflectree/math/affine_form.hpp"
 
 namespace reflectree {
@@ -29,6 +30,12 @@ struct HalfSlopes {
   AffineForm r;
   Vec2<AffineForm> widths, azimuth;
   double turn = 0;  // by which the frame may be off, radians
+// Of viewers whose azimuth matters what directions do not tell at the normal, and where azimuths leap: azimuths, radians,
+// of any branch, of the floats; and wi where wo is turned to azimuth 0, up to 16 roundings, where the map has it there.
+struct KnownViewer {
+  AffineForm sin_theta_o, azimuth;
+  std::optional<AffineForm> azimuth_h = std::nullopt;
+  std::optional<Vec3<AffineForm>> wi = std::nullopt;
 };
 template <>
 struct ShadingGeometry<AffineForm> {
@@ -37,6 +44,7 @@ struct ShadingGeometry<AffineForm> {
   std::optional<BackVector> back = std::nullopt;
   std::optional<HalfAzimuth> azimuth_h = std::nullopt;
   HalfSlopes slopes = {};
+  std::optional<KnownViewer> viewer = std::nullopt;
 };
 
 // The azimuth that the map told, while g is in the frame in which it told it: a geometry that was turned or mirrored
@@ -142,6 +150,12 @@ class BrdfEnclosure {
   // f cos theta_i, up to 16 roundings, of functions that divide by the cosine.
   virtual std::optional<RgbT<AffineForm>> times_cosine(const ShadingGeometry<AffineForm>&) const {
     return std::nullopt;
+  }
+  // Of functions of more channels than three, of which operator() says nothing: what a target makes of f, or of
+  // f cos theta_i.
+  virtual bool reduces_channels() const { return false; }
+  virtual AffineForm reduced(const Target&, const ShadingGeometry<AffineForm>&, bool /*times_cosine*/) const {
+    return AffineForm::anything_in({0, detail::infinity});
   }
   // Whether the function returns the same, to the last bit, for wi and its image in the plane of wo, where wo
   // has no y: then one of the two is looked at.

@@ -58,11 +58,36 @@ class GridPieces {
     return std::none_of(many_.begin(), many_.end(), [](bool many) { return many; });
   }
 
+  // Whether, beyond that, few nodes are touched.
+  bool touches_few() const {
+    int volume = 1;
+    for (std::size_t a = 0; a < d; ++a) volume *= last_[a] - first_[a] + 1;
+    return are_few() && volume < 500;
+  }
+
   // Of the function that is multilinear between the nodes and constant beyond them. nodes(first, last)
   // returns the RealInterval of the nodes of a box, most often of one. The program's interpolation may err by
   // `share` of the largest node that it touches.
   template <class Nodes>
   AffineForm interpolated_by_ranges(const Nodes& nodes, double share) const;
+  // Of a scalar that many functions are reduced to, each of which is multilinear. In each piece it must lie between two
+  // multilinear functions, of which value() tells the values at a corner:
+  //   reduction.clear(), then reduction.add(node, weight) for the nodes about the corner, then reduction.value()
+  // size(node): no less than what the scalar may change by where all functions change by what they are at the node.
+  // For few pieces.
+  template <class Reduction>
+  AffineForm reduced(Reduction& reduction, double share) const {
+    return by_corners(
+        [&](const std::array<int, d>& at, double& largest) {
+          reduction.clear();
+          for_each_node(at, [&](const Node& node, const Node&, double weight) {
+            reduction.add(node, weight);
+            largest = std::max(largest, reduction.size(node));
+          });
+          return reduction.value();
+        },
+        share);
+  }
   // The same for few pieces; value(node) returns a float.
   template <class Value>
   AffineForm interpolated(const Value& value, double share) const {
@@ -76,9 +101,7 @@ class GridPieces {
   // The same where there may be many, on axes that are not periodic: then the range of all nodes.
   template <class Value>
   AffineForm interpolated_or_ranged(const Value& value, double share) const {
-    int volume = 1;
-    for (std::size_t a = 0; a < d; ++a) volume *= last_[a] - first_[a] + 1;
-    if (are_few() && volume < 500) return interpolated(value, share);
+    if (touches_few()) return interpolated(value, share);
     RealInterval range{detail::infinity, -detail::infinity};
     Node node = first_;
     for (bool more = true; more;) {
@@ -132,10 +155,9 @@ class GridPieces {
     place_[a][std::size_t(count_[a]++)] = {x, between ? (x - from) / (to - from) : 0, low, high};
   }
 
-  // The function where places at[a] meet.
-  template <class Nodes>
-  RealInterval corner(const std::array<int, d>& at, const Nodes& nodes, double& largest) const {
-    double lo = 0, hi = 0;
+  // visit(first, last, weight) of the nodes, or ranges of nodes, about the place where places at[a] meet.
+  template <class Visit>
+  void for_each_node(const std::array<int, d>& at, const Visit& visit) const {
     for (std::size_t bits = 0; bits < (std::size_t(1) << d); ++bits) {
       double weight = 1;
       Node first{}, last{};
@@ -146,13 +168,12 @@ class GridPieces {
         first[a] = high ? p.high : p.low;
         last[a] = many_[a] ? last_[a] : first[a];
       }
-      if (weight == 0) continue;
-      const RealInterval v = nodes(first, last);
-      largest = std::max(largest, v.magnitude());
-      lo += weight * v.lo, hi += weight * v.hi;
+      if (weight != 0) visit(first, last, weight);
     }
-    return {lo, hi};
   }
+  // The function between what corner(at, largest) tells where places at[a] meet; `largest` grows to what rounds.
+  template <class Corner>
+  AffineForm by_corners(const Corner& corner, double share) const;
 
   std::array<GridAxis, d> axes_;
   std::array<AffineForm, d> at_;
@@ -165,6 +186,22 @@ class GridPieces {
 template <std::size_t d, int most>
 template <class Nodes>
 AffineForm GridPieces<d, most>::interpolated_by_ranges(const Nodes& nodes, double share) const {
+  return by_corners(
+      [&](const std::array<int, d>& at, double& largest) {
+        double lo = 0, hi = 0;
+        for_each_node(at, [&](const Node& first, const Node& last, double weight) {
+          const RealInterval v = nodes(first, last);
+          largest = std::max(largest, v.magnitude());
+          lo += weight * v.lo, hi += weight * v.hi;
+        });
+        return RealInterval(lo, hi);
+      },
+      share);
+}
+
+template <std::size_t d, int most>
+template <class Corner>
+AffineForm GridPieces<d, most>::by_corners(const Corner& corner, double share) const {
   constexpr std::size_t corners = std::size_t(1) << d;
   double largest = 0;
   // Slopes: along each axis the mean rise of the box's edges.
@@ -172,7 +209,7 @@ AffineForm GridPieces<d, most>::interpolated_by_ranges(const Nodes& nodes, doubl
   for (std::size_t bits = 0; bits < corners; ++bits) {
     std::array<int, d> at{};
     for (std::size_t a = 0; a < d; ++a) at[a] = (bits >> a & 1U) != 0 ? count_[a] - 1 : 0;
-    const double v = corner(at, nodes, largest).middle();
+    const double v = corner(at, largest).middle();
     for (std::size_t a = 0; a < d; ++a) {
       const double width = at_[a].range.hi - at_[a].range.lo;
       if (width > 0 && !many_[a] && at_[a].error < detail::infinity)
@@ -185,7 +222,7 @@ AffineForm GridPieces<d, most>::interpolated_by_ranges(const Nodes& nodes, doubl
   RealInterval offset{detail::infinity, -detail::infinity}, range = offset;
   std::array<int, d> at{};
   for (bool more = true; more;) {
-    const RealInterval v = corner(at, nodes, largest);
+    const RealInterval v = corner(at, largest);
     double line = 0;
     for (std::size_t a = 0; a < d; ++a) line += alpha[a] * place_[a][std::size_t(at[a])].x;
     offset = hull(offset, RealInterval(v.lo - line, v.hi - line)), range = hull(range, v);

@@ -85,6 +85,20 @@ class SumEnclosure final : public BrdfEnclosure {
     for (const Part& part : parts_) sum = sum + AffineForm(part.weight) * (*part.enclosure)(g);
     return sum;
   }
+  // Where a term tells it. Terms are not negative, so that roundings stay relative.
+  std::optional<RgbT<AffineForm>> times_cosine(const ShadingGeometry<AffineForm>& g) const override {
+    std::vector<std::optional<RgbT<AffineForm>>> told;
+    for (const Part& part : parts_) told.push_back(part.enclosure->times_cosine(g));
+    if (std::none_of(told.begin(), told.end(), [](const auto& f_cos) { return bool(f_cos); }))
+      return std::nullopt;
+    RgbT<AffineForm> sum;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Part& part = parts_[i];
+      sum = sum + AffineForm(part.weight) * (told[i] ? *told[i] : g.cos_theta_i * (*part.enclosure)(g));
+    }
+    const auto rounded = [this](const AffineForm& v) { return widened(v, double(parts_.size()) * 0x1p-24); };
+    return RgbT<AffineForm>{rounded(sum.r), rounded(sum.g), rounded(sum.b)};
+  }
 
  private:
   struct Part {

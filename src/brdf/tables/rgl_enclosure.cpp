@@ -4,91 +4,280 @@
 #include <array>
 
 #include "bent_pieces.hpp"
-#include "enclosed_angles.hpp"
+#include "channel_reduction.hpp"
 #include "reflectree/brdf/tables/enclosed_difference.hpp"
 #include "reflectree/math/affine_grid.hpp"
+#include "rgl_places.hpp"
+#include "rgl_slices.hpp"
 
 namespace reflectree {
 
 using namespace bent_pieces;
-using namespace enclosed_angles;
+using namespace rgl_places;
 
 namespace {
 
-constexpr double u = 0x1p-24;
 // Smaller ones count as this.
 constexpr float least_cosine = 1e-6f;
 
-AffineForm elevation_to_u(const AffineForm& theta) { return sqrt(theta * AffineForm(2.f / pi)); }
-// A position on a grid over [0, 1], in cells.
-AffineForm located(const AffineForm& x, int nodes) {
-  return within(within(x, 0, 1) * AffineForm(float(nodes - 1)), 0, nodes - 1);
+RgbT<AffineForm> either(const RgbT<AffineForm>& a, const RgbT<AffineForm>& b) {
+  return {either(a.r, b.r), either(a.g, b.g), either(a.b, b.b)};
 }
 
-// The azimuth of wh relative to that of wo. In the plane of wo y = 0 the sign of wh.y is that of wi.y, and no map
-// returns wi.y = 0 beyond the pole (the cosine of cos_sin_half is positive).
-AffineForm relative_azimuth(const ShadingGeometry<AffineForm>& g) {
-  const bool plane = g.wo.y.range.magnitude() == 0;
-  if (const HalfAzimuth* known = known_azimuth(g)) return known->angle;
-  AffineForm y = g.wh.y, x = g.wh.x;
-  if (!plane) y = g.wo.x * g.wh.y - g.wo.y * g.wh.x, x = g.wo.x * g.wh.x + g.wo.y * g.wh.y;
-  if (plane && g.wi.y.range.lo >= 0) return angle_above(within(y, 0, 2), x);
-  if (plane && g.wi.y.range.hi <= 0) return -angle_above(within(-y, 0, 2), x);
-  if (x.range.lo > 0) return atan2(y, x);
-  return AffineForm::anything_in({-pi_v<double>, pi_v<double>});
-}
-
-// A table that is linear between nodes, at a position in cells.
-AffineForm interpolated(const std::vector<float>& table, const AffineForm& x) {
-  const int nodes = int(table.size());
-  const GridPieces<1> pieces({GridAxis{nodes}}, {x});
-  const auto value = [&](const std::array<int, 1>& i) { return table[std::size_t(i[0])]; };
-  if (pieces.are_few()) return pieces.interpolated(value, 8 * u);
-  RealInterval range{detail::infinity, -detail::infinity};
-  for (int i = pieces.first()[0]; i <= pieces.last()[0]; ++i) {
-    const auto v = double(table[std::size_t(i)]);
-    range = hull(range, RealInterval(v, v));
+// `known`: coordinates of wo that the table knows: theta_o, and phi_o of anisotropic ones.
+template <class Table, std::size_t known>
+class RglEnclosure final : public BrdfEnclosure {
+ public:
+  explicit RglEnclosure(const Table& table) : slices_{table} {
+    if (reduces_channels()) norms_ = norms_of_nodes();
   }
-  return widened(AffineForm::anything_in(range), 8 * u);
-}
 
-}  // namespace
+  RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
+    return value(g, one_by_cosine(g));
+  }
+  std::optional<RgbT<AffineForm>> times_cosine(const ShadingGeometry<AffineForm>& g) const override {
+    return value(g, cosine_by_itself(g));
+  }
+  bool reduces_channels() const override { return slices_.channels() != 1 && slices_.channels() != 3; }
+  AffineForm reduced(const Target& target, const ShadingGeometry<AffineForm>& g,
+                     bool times_cosine) const override {
+    const AffineForm factor = times_cosine ? cosine_by_itself(g) : one_by_cosine(g);
+    return product(g, factor, [&](const KnownForms& wo, const Vec2<AffineForm>& at, const AffineForm& scale) {
+      return scale * this->scalar(colours(wo, at), target);
+    });
+  }
+  // What look-ups take into the part of the circle that is tabulated. Viewers on its border, for whom images differ, are
+  // enclosed as both (for_each_place).
+  bool keeps_half_turns() const override { return reduction() >= 2; }
+  bool keeps_mirrored_axes() const override { return reduction() == 4; }
 
-// Many cells, as where the azimuth of wh may be any. Between nodes of theta_o and y the place along x is a quotient
-// of two means with the same weights, and so between the quotients at the nodes; all masses ascend.
-Vec2<AffineForm> RglEnclosure::unwarped_range(const AffineForm& theta_o, RealInterval x,
-                                              RealInterval y) const {
-  const RglTable& table = table_;
-  const int width = table.warp_width_, height = table.warp_height_, pairs = int(table.theta_o_.size()) - 1;
-  const auto cell = [](double at, int cells) { return std::clamp(int(at), 0, cells - 1); };
-  const int first_y = cell(y.lo, height - 1), last_y = cell(y.hi, height - 1);
-  RealInterval sx{1, 0}, sy{1, 0};
-  for (int pair = 0; pair < pairs; ++pair) {
-    const double from = double(table.theta_o_[std::size_t(pair)]),
-                 to = double(table.theta_o_[std::size_t(pair) + 1]);
-    if ((to < theta_o.range.lo && pair + 1 < pairs) || (from > theta_o.range.hi && pair > 0)) continue;
-    for (const std::size_t side : {0U, 1U}) {
-      const std::size_t slice = std::size_t(pair) * std::size_t(height);
-      const auto below = [&](double at) {
-        const int j = cell(at, height - 1);
-        const RglTable::WarpRow* r = table.rows_ + slice + std::size_t(j);
-        const double b = at - j, m0 = double(r[0].mass[side]), m1 = double(r[1].mass[side]);
-        return double(r[0].cdf[side]) + b * (m0 + 0.5 * b * (m1 - m0));
-      };
-      sy = hull(sy, {below(y.lo), below(y.hi)});
-      for (int j = first_y; j <= last_y + 1; ++j) {
-        const std::size_t row = slice + std::size_t(j);
-        const auto mass = double(table.rows_[row].mass[side]);
-        const auto along = [&](double at) {
-          const int i = cell(at, width - 1);
-          const RglTable::WarpNode* n = table.warp_ + row * std::size_t(width) + std::size_t(i);
-          const double a = at - i, p0 = double(n[0].pdf[side]), p1 = double(n[1].pdf[side]);
-          return double(n[0].cdf[side]) + a * (p0 + 0.5 * a * (p1 - p0));
-        };
-        if (!(mass > 0)) return {AffineForm::anything_in({0, 1}), AffineForm::anything_in({0, 1})};
-        sx = hull(sx, {along(x.lo) / mass, along(x.hi) / mass});
+ private:
+  using Pieces = GridPieces<known + 2, 100>;
+  using Node = typename Pieces::Node;
+  using Where = std::array<const Part*, known + 2>;
+  using Places = std::array<double, known + 2>;
+  using KnownForms = std::array<AffineForm, known>;
+
+  static AffineForm one_by_cosine(const ShadingGeometry<AffineForm>& g) {
+    return AffineForm(1) / max(AffineForm(least_cosine), g.cos_theta_i);
+  }
+  static AffineForm cosine_by_itself(const ShadingGeometry<AffineForm>& g) {
+    const double lo = g.cos_theta_i.range.lo / double(least_cosine);
+    return lo > 1 ? AffineForm(1) : AffineForm::anything_in({std::max(lo * (1 - 2 * u), 0.), 1});
+  }
+
+  // factor D S / (4 sigma), cut at 0.
+  RgbT<AffineForm> value(const ShadingGeometry<AffineForm>& g, const AffineForm& factor) const {
+    return product(g, factor, [&](const KnownForms& wo, const Vec2<AffineForm>& at, const AffineForm& scale) {
+      const Pieces pieces = colours(wo, at);
+      const AffineForm zero(0.f);
+      const auto of = [&](int channel) { return max(scale * this->channel(pieces, channel), zero); };
+      if (reduces_channels()) {
+        const AffineForm any = AffineForm::anything_in({0, detail::infinity});
+        return RgbT<AffineForm>{any, any, any};
+      }
+      if (slices_.channels() == 1) {
+        const AffineForm grey = of(0);
+        return RgbT<AffineForm>{grey, grey, grey};
+      }
+      return RgbT<AffineForm>{of(0), of(1), of(2)};
+    });
+  }
+
+  // finish(wo, place of the colours, factor D / (4 sigma)), of all places of wo and wh in the tables.
+  template <class Finish>
+  auto product(const ShadingGeometry<AffineForm>& g, const AffineForm& factor, const Finish& finish) const {
+    const AffineForm theta_o = polar_angle(sin_theta_o(g), g.cos_theta_o);
+    const AffineForm theta_h = polar_angle(detail::half_frame(g).sin_theta_h, g.cos_theta_h);
+    const AffineForm of_theta_o = elevation_to_u(theta_o), of_theta_h = elevation_to_u(theta_h);
+    const auto at = [&](const KnownForms& wo, const AffineForm& v_of_wo, const AffineForm& phi_h) {
+      const AffineForm of_phi_h = azimuth_to_v(phi_h);
+      const AffineForm sigma = interpolated(slices_.sigma(), of_theta_o, v_of_wo);
+      const GridSize size = slices_.warp_size();
+      const Vec2<AffineForm> place =
+          unwarped(wo, located(of_theta_h, size.width), located(of_phi_h, size.height));
+      const AffineForm normals = max(interpolated(slices_.ndf(), of_theta_h, of_phi_h), AffineForm(0.f));
+      return finish(wo, place, factor * (normals / (AffineForm(4.f) * sigma)));
+    };
+    if constexpr (known == 1) {
+      return at({theta_o}, AffineForm(0.5f), relative_azimuth(g));
+    } else {
+      using Result = decltype(at({theta_o, theta_o}, theta_o, theta_o));
+      std::optional<Result> out;
+      for_each_place(g, [&](const AffineForm& phi_o, const AffineForm& phi_h) {
+        const Result one = at({theta_o, phi_o}, azimuth_to_v(phi_o), phi_h);
+        out = out ? either(*out, one) : one;
+      });
+      return *out;
+    }
+  }
+
+  // Where the table looks wo and wh up, into the half or the quarter of the circle that it has: visit(phi_o, phi_h).
+  // A viewer on the border of it belongs to one side, and a box whose border is that one may belong to either.
+  template <class Visit>
+  void for_each_place(const ShadingGeometry<AffineForm>& g, const Visit& visit) const {
+    const int reduction = this->reduction();
+    const RealInterval x = g.wo.x.range, y = g.wo.y.range;
+    const bool on_plane = y.lo <= 0 && y.hi >= 0;
+    const auto may = [&](bool flip_x, bool flip_y) {
+      if (reduction == 1) return !flip_x && !flip_y;
+      if (reduction == 4) return (flip_x ? x.hi >= 0 : x.lo < 0) && (flip_y ? y.hi >= 0 : y.lo <= 0);
+      if (flip_x != flip_y) return false;
+      return flip_x ? y.hi > 0 || (on_plane && x.hi >= 0) : y.lo < 0 || (on_plane && x.lo < 0);
+    };
+    const RealInterval span{-pi_v<double>, -pi_v<double> + 2 * pi_v<double> / reduction};
+    for (const bool flip_x : {false, true}) {
+      for (const bool flip_y : {false, true}) {
+        if (!may(flip_x, flip_y)) continue;
+        for_each_branch(flipped(azimuth_of_wo(g), flip_x, flip_y), span, 0, [&](const AffineForm& phi_o) {
+          for_each_branch(flipped(azimuth_of_wh(g), flip_x, flip_y), {-pi_v<double>, pi_v<double>}, 1e-9,
+                          [&](const AffineForm& phi_h) {
+                            visit(between_nodes(rounded_angle(phi_o)), rounded_angle(phi_h));
+                          });
+        });
       }
     }
+  }
+
+  int reduction() const {
+    if constexpr (known == 1) {
+      return 1;
+    } else {
+      return slices_.reduction();
+    }
+  }
+  // The nodes span the circle, or its part, up to rounding, and beyond them nothing changes.
+  AffineForm between_nodes(AffineForm phi_o) const {
+    constexpr double rounding = 1e-5;
+    const double first = double(slices_.phi_o().front()), last = double(slices_.phi_o().back());
+    if (phi_o.range.lo > first - rounding) phi_o.range.lo = std::max(phi_o.range.lo, first);
+    if (phi_o.range.hi < last + rounding) phi_o.range.hi = std::min(phi_o.range.hi, last);
+    return phi_o;
+  }
+
+  // The nodes of the known coordinates, and what of(slice) is between them.
+  const std::vector<float>& nodes(std::size_t axis) const {
+    if constexpr (known == 2) {
+      if (axis == 1) return slices_.phi_o();
+    }
+    return slices_.theta_o();
+  }
+  int slice(int theta, int phi) const { return phi * int(slices_.theta_o().size()) + theta; }
+  template <class Of>
+  double mixed(const Where& where, const Places& place, const Of& of) const {
+    const double t = where[0]->share(place[0]);
+    const auto at_phi = [&](int phi) {
+      const int s = slice(where[0]->cell, phi);
+      return (1 - t) * of(s) + t * of(s + 1);
+    };
+    if constexpr (known == 1) {
+      return at_phi(0);
+    } else {
+      const double p = where[1]->share(place[1]);
+      return (1 - p) * at_phi(where[1]->cell) + p * at_phi(where[1]->cell + 1);
+    }
+  }
+  // The first and the last node that values over a range touch.
+  std::pair<int, int> touched(std::size_t axis, const KnownForms& wo) const {
+    const std::vector<float>& all = nodes(axis);
+    const RealInterval range = wo[axis].range;
+    std::size_t first = 0, last = all.size() - 1;
+    while (first + 2 < all.size() && double(all[first + 1]) < range.lo) ++first;
+    while (last > first + 1 && double(all[last - 1]) > range.hi) --last;
+    return {int(first), int(last)};
+  }
+
+  // Where V^-1 leads, each in [0, 1]: from a place in cells of the warp.
+  Vec2<AffineForm> unwarped(const KnownForms& wo, const AffineForm& x, const AffineForm& y) const;
+  Vec2<AffineForm> unwarped_range(const KnownForms& wo, RealInterval x, RealInterval y) const;
+
+  Pieces colours(const KnownForms& wo, const Vec2<AffineForm>& at) const {
+    const GridSize size = slices_.colour_size();
+    std::array<GridAxis, known + 2> axes;
+    std::array<AffineForm, known + 2> places;
+    for (std::size_t a = 0; a < known; ++a)
+      axes[a] = GridAxis{int(nodes(a).size()), false, nodes(a)}, places[a] = wo[a];
+    axes[known] = GridAxis{size.width}, places[known] = located(at.x, size.width);
+    axes[known + 1] = GridAxis{size.height}, places[known + 1] = located(at.y, size.height);
+    return Pieces(axes, places);
+  }
+  const float* colour(const Node& n) const {
+    return slices_.colour(slice(n[0], known == 2 ? n[1] : 0), n[known + 1], n[known]);
+  }
+  AffineForm channel(const Pieces& pieces, int channel) const {
+    return pieces.interpolated_or_ranged([&](const Node& n) { return colour(n)[channel]; }, 32 * u);
+  }
+
+  // Of many channels the target of all.
+  AffineForm scalar(const Pieces& pieces, const Target& target) const {
+    const int channels = slices_.channels();
+    const double share = (40 + 2 * channels) * u;
+    if (pieces.touches_few()) {
+      ChannelReduction reduction(target, channels, [this](const Node& n) { return colour(n); });
+      return max(pieces.reduced(reduction, share), AffineForm(0.f));
+    }
+    // No target is more than the norm, which is largest at a node.
+    const AffineForm norm = pieces.interpolated_or_ranged(
+        [&](const Node& n) { return norms_[std::size_t(colour(n) - slices_.colour(0, 0, 0)) / stride()]; },
+        share);
+    return AffineForm::anything_in({0, double(target.scale) * norm.range.hi});
+  }
+  std::vector<float> norms_of_nodes() const {
+    const GridSize size = slices_.colour_size();
+    std::size_t slices = 1;
+    for (std::size_t a = 0; a < known; ++a) slices *= nodes(a).size();
+    std::vector<float> out;
+    for (int s = 0; s < int(slices); ++s) {
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          double squares = 0;
+          for (int c = 0; c < slices_.channels(); ++c) squares += sqr(double(slices_.colour(s, y, x)[c]));
+          out.push_back(float(std::sqrt(squares) * (1 + 2 * u)));
+        }
+      }
+    }
+    return out;
+  }
+  std::size_t stride() const { return std::size_t(slices_.colour(0, 0, 1) - slices_.colour(0, 0, 0)); }
+
+  RglSlices<Table> slices_;
+  std::vector<float> norms_;  // of many channels, node by node
+};
+
+// Many cells, as where the azimuth of wh may be any. Between nodes of wo and of y the place along x is a quotient of two
+// means with the same weights, and so between the quotients at the nodes; all masses ascend.
+template <class Table, std::size_t known>
+Vec2<AffineForm> RglEnclosure<Table, known>::unwarped_range(const KnownForms& wo, RealInterval x,
+                                                            RealInterval y) const {
+  const GridSize size = slices_.warp_size();
+  const auto cell = [](double at, int cells) { return std::clamp(int(at), 0, cells - 1); };
+  const int first_y = cell(y.lo, size.height - 1), last_y = cell(y.hi, size.height - 1);
+  RealInterval sx{1, 0}, sy{1, 0};
+  const auto add = [&](int slice) {
+    const auto below = [&](double at) {
+      const int j = cell(at, size.height - 1);
+      const WarpLine row = slices_.row(slice, j);
+      const double b = at - j, m0 = row.mass, m1 = slices_.row(slice, j + 1).mass;
+      return row.cdf + b * (m0 + 0.5 * b * (m1 - m0));
+    };
+    sy = hull(sy, {below(y.lo), below(y.hi)});
+    for (int j = first_y; j <= last_y + 1; ++j) {
+      const double mass = slices_.row(slice, j).mass;
+      const auto along = [&](double at) {
+        const int i = cell(at, size.width - 1);
+        const WarpPoint node = slices_.warp(slice, j, i);
+        const double a = at - i, p0 = node.pdf, p1 = slices_.warp(slice, j, i + 1).pdf;
+        return node.cdf + a * (p0 + 0.5 * a * (p1 - p0));
+      };
+      // Where nothing is visible the row adds nothing to the means, and alone it leads to 0.
+      sx = hull(sx, mass > 0 ? RealInterval(along(x.lo) / mass, along(x.hi) / mass) : RealInterval(0, 0));
+    }
+  };
+  const auto [first, last] = touched(0, wo);
+  std::pair<int, int> rows{0, 0};
+  if constexpr (known == 2) rows = touched(1, wo);
+  for (int p = rows.first; p <= rows.second; ++p) {
+    for (int t = first; t <= last; ++t) add(slice(t, p));
   }
   constexpr double share = 64 * u;
   const auto rounded = [](RealInterval r) {
@@ -97,110 +286,85 @@ Vec2<AffineForm> RglEnclosure::unwarped_range(const AffineForm& theta_o, RealInt
   return {rounded(sx), rounded(sy)};
 }
 
-Vec2<AffineForm> RglEnclosure::unwarped(const AffineForm& theta_o, const AffineForm& x,
-                                        const AffineForm& y) const {
-  const RglTable& table = table_;
+template <class Table, std::size_t known>
+Vec2<AffineForm> RglEnclosure<Table, known>::unwarped(const KnownForms& wo, const AffineForm& x,
+                                                      const AffineForm& y) const {
+  constexpr std::size_t n = known + 2;
   const AffineForm any = AffineForm::anything_in({0, 1});
-  const int width = table.warp_width_, height = table.warp_height_;
+  const GridSize size = slices_.warp_size();
   const auto unit = [](int i) { return double(i); };
-  const Parts of_theta(theta_o.range, int(table.theta_o_.size()),
-                       [&](int i) { return double(table.theta_o_[std::size_t(i)]); });
-  const Parts of_x(x.range, width, unit), of_y(y.range, height, unit);
-  if (!of_theta.are_few() || !of_x.are_few() || !of_y.are_few()) {
+  const Parts of_x(x.range, size.width, unit), of_y(y.range, size.height, unit);
+  const Parts of_theta(wo[0].range, int(nodes(0).size()),
+                       [&](int i) { return double(nodes(0)[std::size_t(i)]); });
+  const Parts of_phi(wo[known - 1].range, known == 2 ? int(nodes(1).size()) : 2, [&](int i) {
+    return known == 2 ? double(nodes(known - 1)[std::size_t(i)]) : double(i);
+  });
+  std::array<const Parts*, n> parts;
+  std::array<AffineForm, n> at;
+  parts[0] = &of_theta, parts[known - 1] = known == 2 ? &of_phi : &of_theta;
+  parts[known] = &of_x, parts[known + 1] = &of_y;
+  for (std::size_t a = 0; a < known; ++a) at[a] = wo[a];
+  at[known] = x, at[known + 1] = y;
+  std::size_t count = 1;
+  bool few = true;
+  for (const Parts* p : parts) few = few && p->are_few(), count *= p->size();
+  if (!few || count > Parts::most * Parts::most * Parts::most) {
     // Where wh may be the normal its azimuth may stay unknown however small the box is. Elsewhere halving helps, and
     // a range without slopes would mislead the choice of the axis.
-    if (x.range.lo < 1) return unwarped_range(theta_o, x.range, y.range);
+    if (x.range.lo < 1) return unwarped_range(wo, x.range, y.range);
     return {any, any};
   }
-  using Where = std::array<const Part*, 3>;
-  using Places = std::array<double, 3>;
   constexpr double share = 32 * u;
-  const auto mix = [](const float(&ends)[2], double t) {
-    return (1 - t) * double(ends[0]) + t * double(ends[1]);
-  };
   // Along a row up to x, on both rows of the cell.
   const auto along = [&](const Where& where, const Places& place) {
-    const double t = where[0]->share(place[0]), a = where[1]->share(place[1]), b = where[2]->share(place[2]);
-    const std::size_t row = std::size_t(where[0]->cell) * std::size_t(height) + std::size_t(where[2]->cell);
-    const RglTable::WarpNode* node = table.warp_ + row * std::size_t(width) + std::size_t(where[1]->cell);
-    Bent sum{0, 0, where[1]->hi - where[1]->lo};
-    for (const bool upper : {false, true}) {
-      const RglTable::WarpNode* n = node + (upper ? width : 0);
-      const double p0 = mix(n[0].pdf, t), p1 = mix(n[1].pdf, t), w = upper ? b : 1 - b;
-      sum.value += w * (mix(n[0].cdf, t) + a * (p0 + 0.5 * a * (p1 - p0)));
+    const Part &px = *where[known], &py = *where[known + 1];
+    const double a = px.share(place[known]), b = py.share(place[known + 1]);
+    Bent sum{0, 0, px.hi - px.lo};
+    for (const int upper : {0, 1}) {
+      const auto node = [&](int s, int right) { return slices_.warp(s, py.cell + upper, px.cell + right); };
+      const double cdf = mixed(where, place, [&](int s) { return node(s, 0).cdf; });
+      const double p0 = mixed(where, place, [&](int s) { return node(s, 0).pdf; });
+      const double p1 = mixed(where, place, [&](int s) { return node(s, 1).pdf; });
+      const double w = upper ? b : 1 - b;
+      sum.value += w * (cdf + a * (p0 + 0.5 * a * (p1 - p0)));
       sum.bend += w * (p1 - p0);
     }
     return sum;
   };
-  const auto rows = [&](const Where& where) {
-    return table.rows_ + std::size_t(where[0]->cell) * std::size_t(height) + std::size_t(where[2]->cell);
+  const auto mass_of = [&](const Where& where, const Places& place, int upper) {
+    return mixed(where, place, [&](int s) { return slices_.row(s, where[known + 1]->cell + upper).mass; });
   };
   const auto mass = [&](const Where& where, const Places& place) {
-    const double t = where[0]->share(place[0]), b = where[2]->share(place[2]);
-    const RglTable::WarpRow* r = rows(where);
-    return Bent{(1 - b) * mix(r[0].mass, t) + b * mix(r[1].mass, t), 0, 0};
+    const double b = where[known + 1]->share(place[known + 1]);
+    return Bent{(1 - b) * mass_of(where, place, 0) + b * mass_of(where, place, 1), 0, 0};
   };
   const auto below = [&](const Where& where, const Places& place) {
-    const double t = where[0]->share(place[0]), b = where[2]->share(place[2]);
-    const RglTable::WarpRow* r = rows(where);
-    const double m0 = mix(r[0].mass, t), m1 = mix(r[1].mass, t);
-    return Bent{mix(r[0].cdf, t) + b * (m0 + 0.5 * b * (m1 - m0)), m1 - m0, where[2]->hi - where[2]->lo};
+    const Part& py = *where[known + 1];
+    const double b = py.share(place[known + 1]);
+    const double m0 = mass_of(where, place, 0), m1 = mass_of(where, place, 1);
+    const double cdf = mixed(where, place, [&](int s) { return slices_.row(s, py.cell).cdf; });
+    return Bent{cdf + b * (m0 + 0.5 * b * (m1 - m0)), m1 - m0, py.hi - py.lo};
   };
   // Where x does not enter one part of it stands for all.
-  const AffineForm nowhere(0);
   const Parts one(RealInterval(0, 0), 2, unit);
-  const std::array<const Parts*, 3> flat{&of_theta, &one, &of_y};
-  const AffineForm sy = enclosed(flat, {theta_o, nowhere, y}, below, share);
-  const AffineForm m = enclosed(flat, {theta_o, nowhere, y}, mass, share);
-  if (!(m.range.lo > 0)) return {any, within(sy, 0, 2)};
-  return {enclosed({&of_theta, &of_x, &of_y}, {theta_o, x, y}, along, share) / m, sy};
+  std::array<const Parts*, n> flat = parts;
+  std::array<AffineForm, n> flat_at = at;
+  flat[known] = &one, flat_at[known] = AffineForm(0);
+  const AffineForm sy = enclosed(flat, flat_at, below, share);
+  const AffineForm m = enclosed(flat, flat_at, mass, share);
+  if (!(m.range.lo > 0)) return {unwarped_range(wo, x.range, y.range).x, within(sy, 0, 2)};
+  return {enclosed(parts, at, along, share) / m, sy};
 }
 
-RgbT<AffineForm> RglEnclosure::colour(const AffineForm& theta_o, const Vec2<AffineForm>& at) const {
-  const int nodes = int(table_.theta_o_.size()), width = table_.colour_width_, height = table_.colour_height_;
-  const GridAxis of_theta{nodes, false, table_.theta_o_};
-  // Of a hundred places along an axis, if there are few along the others.
-  using Pieces = GridPieces<3, 100>;
-  const Pieces pieces({of_theta, GridAxis{width}, GridAxis{height}},
-                      {theta_o, located(at.x, width), located(at.y, height)});
-  using Node = Pieces::Node;
-  const auto of = [&](int channel) {
-    const auto value = [&, channel](const Node& n) {
-      const int pair = std::min(n[0], nodes - 2);
-      const std::size_t row = std::size_t(pair) * std::size_t(height) + std::size_t(n[2]);
-      return table_.colour_[row * std::size_t(width) + std::size_t(n[1])].rgb[n[0] - pair][channel];
-    };
-    constexpr double share = 32 * u;
-    return pieces.interpolated_or_ranged(value, share);
-  };
-  return {of(0), of(1), of(2)};
-}
+}  // namespace
 
-RgbT<AffineForm> RglEnclosure::operator()(const ShadingGeometry<AffineForm>& g) const {
-  return value(g, AffineForm(1) / max(AffineForm(least_cosine), g.cos_theta_i));
+std::shared_ptr<const BrdfEnclosure> enclosure_of(const RglTable& table) {
+  return std::make_shared<RglEnclosure<RglTable, 1>>(table);
 }
-
-std::optional<RgbT<AffineForm>> RglEnclosure::times_cosine(const ShadingGeometry<AffineForm>& g) const {
-  const double lo = g.cos_theta_i.range.lo / double(least_cosine);
-  return value(g, lo > 1 ? AffineForm(1) : AffineForm::anything_in({std::max(lo * (1 - 2 * u), 0.), 1}));
-}
-
-RgbT<AffineForm> RglEnclosure::value(const ShadingGeometry<AffineForm>& g, const AffineForm& factor) const {
-  const AffineForm sin_o =
-      g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0 ? g.wo.x : sqrt(sin2_theta(g.wo));
-  const AffineForm theta_o = polar_angle(sin_o, g.cos_theta_o);
-  const AffineForm sigma =
-      interpolated(table_.sigma_, located(elevation_to_u(theta_o), int(table_.sigma_.size())));
-  const AffineForm theta_h = polar_angle(detail::half_frame(g).sin_theta_h, g.cos_theta_h);
-  const AffineForm of_theta = elevation_to_u(theta_h);
-  const AffineForm of_phi = relative_azimuth(g) * AffineForm(0.5f / pi) + AffineForm(0.5f);
-  const Vec2<AffineForm> at =
-      unwarped(theta_o, located(of_theta, table_.warp_width_), located(of_phi, table_.warp_height_));
-  const AffineForm zero(0.f);
-  const AffineForm normals = max(interpolated(table_.ndf_, located(of_theta, int(table_.ndf_.size()))), zero);
-  const AffineForm scale = factor * (normals / (AffineForm(4.f) * sigma));
-  const RgbT<AffineForm> f = colour(theta_o, at);
-  return {max(scale * f.r, zero), max(scale * f.g, zero), max(scale * f.b, zero)};
+std::shared_ptr<const BrdfEnclosure> enclosure_of(const RglWideTable& table) {
+  const RglSlices<RglWideTable> slices{table};
+  if (slices.phi_o().size() == 1) return std::make_shared<RglEnclosure<RglWideTable, 1>>(table);
+  return std::make_shared<RglEnclosure<RglWideTable, 2>>(table);
 }
 
 }  // namespace reflectree

@@ -171,7 +171,7 @@ BrdfTraits RglTable::traits() const {
   traits.isotropic_by_formula = true;
   traits.name = name;
   traits.theta_o_knots = theta_o_;
-  traits.enclosure = std::make_shared<RglEnclosure>(*this);
+  traits.enclosure = enclosure_of(*this);
   // 1 / sigma is piecewise linear in u, in steps of less than a degree.
   traits.theta_o_factor = [sigma = sigma_](double theta_o) {
     return 1 / double(interpolate(sigma, elevation_to_u(float(theta_o))));

@@ -7,6 +7,7 @@
 #include "reflectree/brdf/tables/between_nodes.hpp"
 #include "reflectree/math/fast_functions.hpp"
 #include "reflectree/math/prefetch.hpp"
+#include "rgl_enclosure.hpp"
 #include "rgl_parts.hpp"
 
 namespace reflectree {
@@ -52,19 +53,23 @@ RglWideTable::RglWideTable(const RglWideFields& fields)
     sigma_ = {2, 2, std::vector<float>(4, 0.25f)};
     ndf_ = {2, 2, std::vector<float>(4, 1.f)};
   }
-  warp_.reserve(slices * warp_size_), row_.reserve(slices * rows_);
-  colour_.resize(slices * colour_size_ * stride_);
+  const auto tables = std::make_shared<Tables>();
+  tables->warp.reserve(slices * warp_size_), tables->rows.reserve(slices * rows_);
+  tables->colour.resize(slices * colour_size_ * stride_);
   for (std::size_t s = 0; s < slices; ++s) {
     const Slice slice = integrate(fields.vndf.data() + s * warp_size_, warp_width_, warp_height_);
-    for (std::size_t i = 0; i < warp_size_; ++i) warp_.push_back({float(slice.cdf[i]), float(slice.pdf[i])});
+    for (std::size_t i = 0; i < warp_size_; ++i)
+      tables->warp.push_back({float(slice.cdf[i]), float(slice.pdf[i])});
     for (std::size_t y = 0; y < rows_; ++y)
-      row_.push_back({float(slice.row_cdf[y]), float(slice.row_mass[y])});
+      tables->rows.push_back({float(slice.row_cdf[y]), float(slice.row_mass[y])});
     const float* from = fields.colours.data() + s * channels * colour_size_;
     for (std::size_t c = 0; c < channels; ++c) {
       for (std::size_t i = 0; i < colour_size_; ++i)
-        colour_[(s * colour_size_ + i) * stride_ + c] = from[c * colour_size_ + i];
+        tables->colour[(s * colour_size_ + i) * stride_ + c] = from[c * colour_size_ + i];
     }
   }
+  warp_ = tables->warp.data(), row_ = tables->rows.data(), colour_ = tables->colour.data();
+  tables_ = tables;
 }
 
 RglWideTable::Known RglWideTable::known(const ShadingGeometry<float>& g) const {
@@ -117,13 +122,13 @@ RglWideTable::InColour RglWideTable::in_colour(const Known& known, const InWarp&
   float cdf[2] = {0, 0}, p0[2] = {0, 0}, p1[2] = {0, 0}, row_cdf = 0, m0 = 0, m1 = 0;
   for (std::size_t s = 0; s < slices_; ++s) {
     const float w = known.weight[s];
-    const WarpNode* lower = warp_.data() + known.slice[s] * warp_size_ + at.node;
+    const WarpNode* lower = warp_ + known.slice[s] * warp_size_ + at.node;
     const WarpNode* nodes[2] = {lower, lower + warp_width_};
     for (std::size_t k = 0; k < 2; ++k) {
       cdf[k] += w * nodes[k][0].cdf;
       p0[k] += w * nodes[k][0].pdf, p1[k] += w * nodes[k][1].pdf;
     }
-    const WarpRow* rows = row_.data() + known.slice[s] * rows_ + at.row;
+    const WarpRow* rows = row_ + known.slice[s] * rows_ + at.row;
     row_cdf += w * rows[0].cdf, m0 += w * rows[0].mass, m1 += w * rows[1].mass;
   }
   const auto along = [&](std::size_t k) { return cdf[k] + x1 * (p0[k] + 0.5f * x1 * (p1[k] - p0[k])); };
@@ -141,7 +146,7 @@ void RglWideTable::colour(const Known& known, const InWarp& warp, const InColour
   const std::size_t channels = std::size_t(channels_), row = std::size_t(colour_width_) * stride_;
   std::fill_n(out, channels, 0.f);
   for (std::size_t s = 0; s < slices_; ++s) {
-    const float* node = colour_.data() + (known.slice[s] * colour_size_ + at.node) * stride_;
+    const float* node = colour_ + (known.slice[s] * colour_size_ + at.node) * stride_;
     const float w = scale * known.weight[s], lower = w * (1 - at.y), upper = w * at.y;
     const float w00 = lower * (1 - at.x), w10 = lower * at.x, w01 = upper * (1 - at.x), w11 = upper * at.x;
     for (std::size_t c = 0; c < channels; ++c)
@@ -178,15 +183,15 @@ void RglWideTable::eval(std::span<const ShadingGeometry<float>> geometry, std::s
       [&](const Known& of_wo, const ShadingGeometry<float>& g) {
         const InWarp at = in_warp(of_wo, g);
         for (std::size_t s = 0; s < slices_; ++s) {
-          two_rows(warp_.data() + of_wo.slice[s] * warp_size_ + at.node, std::size_t(warp_width_));
-          prefetch(row_.data() + of_wo.slice[s] * rows_ + at.row);
+          two_rows(warp_ + of_wo.slice[s] * warp_size_ + at.node, std::size_t(warp_width_));
+          prefetch(row_ + of_wo.slice[s] * rows_ + at.row);
         }
         return at;
       },
       [&](const Known& of_wo, const InWarp& warp) {
         const InColour at = in_colour(of_wo, warp);
         for (std::size_t s = 0; s < slices_; ++s) {
-          two_rows(colour_.data() + (of_wo.slice[s] * colour_size_ + at.node) * stride_,
+          two_rows(colour_ + (of_wo.slice[s] * colour_size_ + at.node) * stride_,
                    std::size_t(colour_width_) * stride_);
         }
         return at;
@@ -204,6 +209,7 @@ BrdfTraits RglWideTable::traits() const {
   traits.channels = channels_;
   traits.isotropic = traits.isotropic_by_formula = slices_ == 2;
   traits.theta_o_knots = theta_o_;
+  traits.enclosure = enclosure_of(*this);
   if (reduction_ == 4) traits.axis = 0.f;
   if (slices_ == 4) {  // the nodes, and what their half or quarter is repeated by
     AzimuthKnots all{pi / 2, {}};

@@ -59,65 +59,102 @@ auto mix(const SpecularAxes& axes, const Corners& c, const std::vector<Entry>& e
   return sum;
 }
 
-// An isotropic table over boxes.
-template <class Value>
+// A table over boxes; `known`: coordinates of wo that it knows, theta_o, and the rotation of anisotropic ones.
+template <class Value, std::size_t known>
 class SpecularEnclosure final : public BrdfEnclosure {
  public:
   explicit SpecularEnclosure(const SpecularTable<Value>& table) : table_(table) {}
 
   RgbT<AffineForm> operator()(const ShadingGeometry<AffineForm>& g) const override {
     using namespace enclosed_angles;
-    const SpecularAxes& axes = table_.axes;
-    const bool plane = g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0;
-    const AffineForm sin_o = plane ? g.wo.x : sqrt(sin2_theta(g.wo));
-    AffineForm along = g.wi.x, y = g.wi.y;
-    if (!plane) {
-      const AffineForm any = AffineForm::anything_in({-1.0001, 1.0001});
-      const bool known = sin_o.range.lo > 1e-6;
-      const AffineForm cosine = known ? g.wo.x / sin_o : any, sine = known ? g.wo.y / sin_o : any;
-      along = cosine * g.wi.x + sine * g.wi.y, y = cosine * g.wi.y - sine * g.wi.x;
-    }
-    const AffineForm x = g.cos_theta_o * along + sin_o * g.wi.z, z = g.cos_theta_o * g.wi.z - sin_o * along;
-    const AffineForm radial = angle_above(sqrt(sqr(x) + sqr(y)), z);
-    using Pieces = GridPieces<3, 100>;
-    const auto axis = [](const std::vector<float>& nodes) {
-      return GridAxis{int(nodes.size()), false, nodes};
+    const AffineForm sin_o = sin_theta_o(g);
+    const Vec2<AffineForm> wi = in_plane_of_wo(g, sin_o);
+    const AffineForm x = g.cos_theta_o * wi.x + sin_o * g.wi.z, z = g.cos_theta_o * g.wi.z - sin_o * wi.x;
+    const AffineForm theta_o = polar_angle(sin_o, g.cos_theta_o),
+                     radial = angle_above(sqrt(sqr(x) + sqr(wi.y)), z);
+    std::optional<RgbT<AffineForm>> out;
+    const auto add = [&](const std::array<AffineForm, known + 2>& at) {
+      const RgbT<AffineForm> one = value(at);
+      out = out ? RgbT<AffineForm>{either(out->r, one.r), either(out->g, one.g), either(out->b, one.b)} : one;
     };
-    const Pieces pieces({axis(axes.theta_o), axis(axes.azimuth), axis(axes.radial)},
-                        {polar_angle(sin_o, g.cos_theta_o), azimuth(y, x), radial});
-    return {channel(pieces, 0), channel(pieces, 1), channel(pieces, 2)};
+    for_each_azimuth(wi.y, x, [&](const AffineForm& azimuth) {
+      if constexpr (known == 1) {
+        add({theta_o, azimuth, radial});
+      } else {
+        const AffineForm rotation = shifted(-azimuth_of_wo(g), 0.5 * pi_v<double>);
+        for_each_turn(table_.axes.rotation, rotation, [&](const AffineForm& branch) {
+          add({branch, theta_o, azimuth, radial});
+        });
+      }
+    });
+    return *out;
   }
 
  private:
-  AffineForm azimuth(const AffineForm& y, const AffineForm& x) const {
-    using namespace enclosed_angles;
-    if (table_.axes.mirrored) return angle_above(abs(y), x);
-    // Where no direction of the box lies where the angle leaps.
-    const auto first = double(table_.axes.azimuth.front());
-    AffineForm angle = AffineForm::anything_in({-pi_v<double>, pi_v<double>});
-    if (y.range.lo >= 0) {
-      angle = angle_above(y, x);
-    } else if (y.range.hi <= 0) {
-      angle = -angle_above(-y, x);
-    } else if (x.range.lo > 0) {
-      angle = widened(atan2(y, x), angle_share);
+  using Pieces = GridPieces<known + 2, 100>;
+
+  // x and y of wi where wo has no y.
+  static Vec2<AffineForm> in_plane_of_wo(const ShadingGeometry<AffineForm>& g, const AffineForm& sin_o) {
+    if (g.wo.y.range.magnitude() == 0 && g.wo.x.range.lo >= 0) return {g.wi.x, g.wi.y};
+    if (g.viewer && g.viewer->wi) {
+      const AffineForm slack = AffineForm::anything_in({-2e-6, 2e-6});  // turned there and back
+      return {g.viewer->wi->x + slack, g.viewer->wi->y + slack};
     }
-    constexpr double off = 1e-5;
-    const AffineForm slack = AffineForm::anything_in({-2e-6, 2e-6});
-    if (angle.range.lo > first + off && angle.range.hi < first + 2 * pi_v<double> - off) return angle + slack;
-    if (angle.range.hi < first - off && angle.range.lo > first - 2 * pi_v<double> + off)
-      return angle + AffineForm(2 * pi_v<double>) + slack;
-    return AffineForm::anything_in({first - off, first + 2 * pi_v<double> + off});
+    const AffineForm any = AffineForm::anything_in({-1.0001, 1.0001});
+    Vec2<AffineForm> azimuth{any, any};
+    if (sin_o.range.lo > 1e-6) azimuth = {g.wo.x / sin_o, g.wo.y / sin_o};
+    if (g.viewer) {
+      const AffineForm slack = AffineForm::anything_in({-1e-6, 1e-6});
+      azimuth = {cos(g.viewer->azimuth) + slack, sin(g.viewer->azimuth) + slack};
+    }
+    return {azimuth.x * g.wi.x + azimuth.y * g.wi.y, azimuth.x * g.wi.y - azimuth.y * g.wi.x};
   }
-  template <class Pieces>
+  // An angle that the program turns into the circle of nodes, of which the last is the first and a turn.
+  template <class Visit>
+  static void for_each_turn(const std::vector<float>& nodes, const AffineForm& angle, const Visit& visit) {
+    using namespace enclosed_angles;
+    constexpr double rounding = 3e-6;
+    const auto first = double(nodes.front());
+    const AffineForm rounded = widened(angle, angle_share) + AffineForm::anything_in({-rounding, rounding});
+    for_each_branch(rounded, {first, first + 2 * pi_v<double>}, 0, visit);
+  }
+  template <class Visit>
+  void for_each_azimuth(const AffineForm& y, const AffineForm& x, const Visit& visit) const {
+    using namespace enclosed_angles;
+    if (table_.axes.mirrored) return visit(angle_above(abs(y), x));
+    const AffineForm angle = azimuth_of(y, x);
+    if (angle.range.hi - angle.range.lo < 1.5 * pi_v<double>)
+      return for_each_turn(table_.axes.azimuth, angle, visit);
+    const auto first = double(table_.axes.azimuth.front());
+    visit(AffineForm::anything_in({first, first + 2 * pi_v<double>}));
+  }
+  RgbT<AffineForm> value(const std::array<AffineForm, known + 2>& at) const {
+    const SpecularAxes& axes = table_.axes;
+    const auto axis = [](const std::vector<float>& nodes) {
+      return GridAxis{int(nodes.size()), false, nodes};
+    };
+    std::array<GridAxis, known + 2> grid;
+    if constexpr (known == 2) grid[0] = axis(axes.rotation);
+    grid[known - 1] = axis(axes.theta_o), grid[known] = axis(axes.azimuth),
+                 grid[known + 1] = axis(axes.radial);
+    const Pieces pieces(grid, at);
+    if constexpr (std::is_same_v<Value, float>) {
+      const AffineForm grey = channel(pieces, 0);
+      return {grey, grey, grey};
+    } else {
+      return {channel(pieces, 0), channel(pieces, 1), channel(pieces, 2)};
+    }
+  }
   AffineForm channel(const Pieces& pieces, int c) const {
     const SpecularAxes& axes = table_.axes;
-    const auto value = [&](const std::array<int, 3>& i) {
-      const std::size_t row = std::size_t(i[0]) * axes.azimuth.size() + std::size_t(i[1]);
-      return channel_value(table_.values[row * axes.radial.size() + std::size_t(i[2])], c);
+    const auto entry = [&](const std::array<int, known + 2>& i) {
+      const std::size_t slice =
+          (known == 2 ? std::size_t(i[0]) * axes.theta_o.size() : 0) + std::size_t(i[known - 1]);
+      const std::size_t row = slice * axes.azimuth.size() + std::size_t(i[known]);
+      return channel_value(table_.values[row * axes.radial.size() + std::size_t(i[known + 1])], c);
     };
     constexpr double share = 0x1p-19;
-    return max(pieces.interpolated_or_ranged(value, share), AffineForm(0.f));
+    return max(pieces.interpolated_or_ranged(entry, share), AffineForm(0.f));
   }
 
   SpecularTable<Value> table_;
@@ -149,8 +186,10 @@ BrdfTraits SpecularTable<Value>::traits() const {
   traits.name = name;
   traits.isotropic = traits.isotropic_by_formula = axes.rotation.size() == 1;
   traits.theta_o_knots = axes.theta_o;
-  if (traits.isotropic) traits.enclosure = std::make_shared<SpecularEnclosure<Value>>(*this);
-  if (!traits.isotropic) {
+  if (traits.isotropic) {
+    traits.enclosure = std::make_shared<SpecularEnclosure<Value, 1>>(*this);
+  } else {
+    traits.enclosure = std::make_shared<SpecularEnclosure<Value, 2>>(*this);
     AzimuthKnots all{pi / 2, {}};
     for (const float rotation : axes.rotation) all.phi_o.push_back(pi / 2 - rotation);
     traits.phi_o_knots.push_back(std::move(all));

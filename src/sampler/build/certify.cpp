@@ -165,7 +165,7 @@ std::string no_proof(const AnyBrdf& f) {
   if (!traits.enclosure)
     return "no interval form: it is known at points alone; models, MERL tables, fits, sums of them, "
            "and functions with bound() or lipschitz() have one";
-  if (traits.channels != 1 && traits.channels != 3)
+  if (traits.channels != 1 && traits.channels != 3 && !traits.enclosure->reduces_channels())
     return "no interval form of a function of this many channels";
   return "";
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double lost_per_axis = 32 * 0x1p-24;
 
 // The lines between the nodes of a row, as they are looked up, lie between two lines of one slope; the nodes say
-// how far apart. size: of the largest term.
+// how far apart. size: of the largest value.
 struct RowForm {
   AffineForm form;
   double size = 0;
@@ -42,7 +42,7 @@ RowForm row_over(const PackedAlbedo& table, const AffineForm& cosine, const Piec
   // fl(base + fl(slope c)), and the doubles here.
   const double rounding = size * 0x1.01p-24;
   const auto wider = [rounding](RealInterval r) { return RealInterval(r.lo - rounding, r.hi + rounding); };
-  return {linear_enclosure(cosine, alpha, wider(offset), wider(range)), size};
+  return {linear_enclosure(cosine, alpha, wider(offset), wider(range)), wider(range).magnitude()};
 }
 
 // Value and slope of the weight of row i of four (cubic_weights).
@@ -173,7 +173,7 @@ AffineForm albedo_over(const PackedAlbedo& table, const AffineForm& cosine, cons
     all.front().first += segment.first;
     all.insert(all.end(), levels.begin(), levels.end());
     const AffineForm here = Sum(table, cosine, std::move(all))();
-    out = any ? AffineForm::anything_in(hull(out.range, here.range)) : here;
+    out = any ? either(out, here) : here;
     any = true;
   }
   return out;

@@ -77,6 +77,10 @@ AffineForm EnclosedField::value_over(const DomainPointT<AffineForm>& point,
                                      const ShadingGeometry<AffineForm>& g, const ViewerForms& v) const {
   if (family_)
     return reduced(packed_.target, (*family_enclosure_)(g, v.parameters), channels_) * point.projected_area;
+  if (enclosure_->reduces_channels()) {
+    const AffineForm t = enclosure_->reduced(packed_.target, g, point.area_by_cosine.has_value());
+    return point.area_by_cosine ? widened(t * *point.area_by_cosine, 0x1p-19) : t * point.projected_area;
+  }
   if (point.area_by_cosine) {
     // The order of the products is another one: 32 roundings.
     if (const auto f_cos = enclosure_->times_cosine(g))
@@ -128,6 +132,10 @@ EnclosedPoint EnclosedField::over(const ViewerForms& viewer, const ProofBox& box
                     angle};
   if (both_sides_) {
     out.mirrored = target_over(lifted, mirrored_in_plane(lifted.geometry), viewer);
+  } else if (at.p.y.range.lo < 0 && at.p.y.range.hi == 0) {  // the pole itself is on the other side
+    const DomainPointT<AffineForm> pole =
+        lift_box(viewer_.domain_of(packed_.domain, viewer), viewer.wo, {at.p.x, AffineForm(0)});
+    out.mirrored = target_over(pole, pole.geometry, viewer);
   }
   return out;
 }

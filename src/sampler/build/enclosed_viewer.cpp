@@ -81,13 +81,13 @@ ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters
   const AffineForm c =
       clipped(widened(cos(unknown[0]), length_tolerance), {double(known.lo), double(known.hi)});
   const AffineForm s = widened(sin(unknown[0]), length_tolerance);
-  v.wo = v.framed = {s, AffineForm(0), c};
+  v.wo = v.framed = {s, AffineForm(0), c}, v.sine = s;
   std::size_t next = 1, slot = 0;
   AffineForm phi_o;
   if (azimuth_) {
     const AffineForm& phi = unknown[next++];
     const ViewerSymmetry symmetry = viewer_.frame.symmetry;
-    v.cos_phi = cos(phi), v.sin_phi = sin(phi);
+    v.phi = phi, v.cos_phi = cos(phi), v.sin_phi = sin(phi);
     if (symmetry == ViewerSymmetry::two_planes) v.cos_phi = clipped(v.cos_phi, {0, 1});
     if (span_of(symmetry) < 4) v.sin_phi = clipped(v.sin_phi, {0, 1});
     v.framed = {s * v.cos_phi, s * v.sin_phi, c};
@@ -173,6 +173,24 @@ HalfSlopes EnclosedViewer::slopes_from_axis(HalfSlopes h) const {
   return h;
 }
 
+// g in the frame of the domain. Turns by an axis or by phi_o round: azimuths err by 8 u or so.
+KnownViewer EnclosedViewer::known_of(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
+                                          ViewerImage image) const {
+  constexpr double rounding = 2e-6;
+  const bool framed = viewer_.sin_axis == 0 && viewer_.cos_axis > 0;
+  const double axis = std::atan2(double(viewer_.sin_axis), double(viewer_.cos_axis));
+  const auto imaged = [&](const AffineForm& angle, bool rounds) {
+    const double by = (image.half_turn ? pi_v<double> : 0) + axis, off = rounds ? rounding : 0;
+    const AffineForm a = image.mirrored ? -angle : angle;
+    return linear_enclosure(a, 1, {by - off, by + off}, {a.range.lo + by - off, a.range.hi + by + off});
+  };
+  KnownViewer out{widened(v.sine, 8 * u), imaged(v.phi, !framed)};
+  const HalfAzimuth* half = viewer_.turns ? known_azimuth(g) : g.azimuth_h ? &*g.azimuth_h : nullptr;
+  if (half) out.azimuth_h = imaged(viewer_.turns ? half->angle + v.phi : half->angle, viewer_.turns || !framed);
+  if (viewer_.turns) out.wi = Vec3<AffineForm>{g.wi.x, image.mirrored ? -g.wi.y : g.wi.y, g.wi.z};
+  return out;
+}
+
 ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<AffineForm>& g,
                                                        const ViewerForms& v, ViewerImage image) const {
   if (!azimuth_) return g;
@@ -182,7 +200,7 @@ ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<Aff
     return from_axis(w);
   };
   ShadingGeometry<AffineForm> out = g;
-  out.back = std::nullopt;
+  out.back = std::nullopt, out.viewer = known_of(g, v, image);
   out.slopes = slopes_from_axis(g.slopes);
   out.wo = imaged(v.framed);
   if (viewer_.sin_axis != 0) {  // it is the framed one that rounds

@@ -23,9 +23,10 @@ struct Elevations {
 };
 
 struct ViewerForms {
-  Vec3<AffineForm> wo;          // in the frame of the domain
-  Vec3<AffineForm> framed;      // in the viewer's frame, folded
-  AffineForm cos_phi, sin_phi;  // of its azimuth there
+  Vec3<AffineForm> wo;               // in the frame of the domain
+  Vec3<AffineForm> framed;           // in the viewer's frame, folded
+  AffineForm sine;                   // of theta_o
+  AffineForm phi, cos_phi, sin_phi;  // its azimuth there
   AffineForm albedo;
   ParameterForms parameters, coordinates;
 };
@@ -59,6 +60,7 @@ class EnclosedViewer {
   DomainForms domain_of(const Domain& domain, const ViewerForms& v) const;
 
  private:
+  KnownViewer known_of(const ShadingGeometry<AffineForm>& g, const ViewerForms& v, ViewerImage image) const;
   bool axis_is_coordinate() const;
   Vec3<AffineForm> from_axis(const Vec3<AffineForm>& w) const;
   HalfSlopes slopes_from_axis(HalfSlopes h) const;

@@ -69,14 +69,17 @@ std::vector<float> padded(const AlbedoTable& table) {
   return values;
 }
 
-// The lines between the nodes of a row.
-void pack_row(const std::vector<float>& cosines, const float* albedo, std::vector<AlbedoPiece>& pieces) {
+// The lines between the nodes of a row; of an azimuth where there are several, all of which meet at the normal.
+void pack_row(const std::vector<float>& cosines, const float* albedo, bool of_azimuth,
+              std::vector<AlbedoPiece>& pieces) {
   for (std::size_t i = 0; i + 1 < cosines.size(); ++i) {
     const double c0 = double(cosines[i]), c1 = double(cosines[i + 1]);
     const double a0 = double(albedo[i]), a1 = double(albedo[i + 1]);
     // Between neighbouring floats lies nothing; a line through both sides of a jump would lose every digit.
-    // The last line holds its upper end, too.
-    const bool neighbours = i + 2 < cosines.size() && std::nextafter(cosines[i], 2.f) >= cosines[i + 1];
+    // The last line holds its upper end, too. That is not the normal alone, but all who are nearer to it than a float
+    // tells: with an azimuth of theirs, whose value is that of the neighbour.
+    const bool neighbours =
+        (i + 2 < cosines.size() || of_azimuth) && std::nextafter(cosines[i], 2.f) >= cosines[i + 1];
     const double slope = neighbours ? 0 : (a1 - a0) / (c1 - c0);
     pieces.push_back({float(a0 - slope * c0), float(slope)});
   }
@@ -139,7 +142,7 @@ PackedAlbedo pack(const AlbedoTable& table) {
   }
   const std::vector<float> values = padded(table);
   for (std::size_t first = 0; first < values.size(); first += columns)
-    pack_row(table.cos_theta_o, values.data() + first, packed.pieces);
+    pack_row(table.cos_theta_o, values.data() + first, rows > 0, packed.pieces);
   packed.positive = table.parameters.size() + (rows > 0) == 1 && is_positive(values, columns);
   rows = std::max<std::size_t>(rows, 1);
   for (const AlbedoAxis& axis : table.parameters) {

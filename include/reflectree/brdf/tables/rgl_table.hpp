@@ -81,7 +81,8 @@ class RglTable {
   InColour in_colour(const Known& known, const InWarp& at) const;
   Rgb unclipped(const Known& known, float u, const InColour& at, float cos_theta_i) const;
 
-  friend class RglEnclosure;  // reads the same tables
+  template <class Table>
+  friend struct RglSlices;  // reads the same tables, for the enclosure
 
   struct Tables {
     std::vector<WarpNode> warp;

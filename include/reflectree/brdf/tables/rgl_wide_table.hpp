@@ -7,6 +7,7 @@
 // relative to that of wo.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -82,6 +83,14 @@ class RglWideTable {
   void colour(const Known& known, const InWarp& warp, const InColour& at, float cos_theta_i,
               float* out) const;
 
+  template <class Table>
+  friend struct RglSlices;  // reads the same tables, for the enclosure
+
+  struct Tables {
+    std::vector<WarpNode> warp;
+    std::vector<WarpRow> rows;
+    std::vector<float> colour;
+  };
   std::vector<float> phi_o_, theta_o_;
   int reduction_, channels_;
   RglSquare sigma_, ndf_;
@@ -89,9 +98,10 @@ class RglWideTable {
   std::size_t slices_;                          // around a known direction: 2 or 4
   std::size_t warp_size_, rows_, colour_size_;  // of a slice
   std::size_t stride_;                          // floats of a node of colours
-  std::vector<WarpNode> warp_;
-  std::vector<WarpRow> row_;
-  std::vector<float> colour_;  // [slice][y][x][stride]
+  std::shared_ptr<const Tables> tables_;        // copies share it
+  const WarpNode* warp_;                        // [slice][v][u]
+  const WarpRow* row_;                          // [slice][v]
+  const float* colour_;                         // [slice][y][x][stride]
 };
 
 }  // namespace reflectree

@@ -178,6 +178,22 @@ inline DomainPointT<AffineForm> with_unit_vectors(DomainPointT<AffineForm> point
   return point;
 }
 
+// The azimuth of the half vectors of a star: that of their slopes, on one side of y = 0. The map's sine and cosine err by
+// 4e-7, products by less, and the square is kept from the pole.
+template <class Map>
+std::optional<HalfAzimuth> star_azimuth(const Map& map, const Vec2<AffineForm>& p) {
+  if (p.y.range.lo < 0 && p.y.range.hi > 0) return std::nullopt;
+  const Vec2<AffineForm> half = cos_sin_half(p.x), along = map.along({half.y, half.x});
+  const AffineForm angle =
+      along.x.range.hi < 0 ? AffineForm(pi_v<double>) - atan2(along.y, -along.x) : atan2(along.y, along.x);
+  constexpr double off = 1e-6;
+  AffineForm rounded = angle + AffineForm::anything_in({-off, off});
+  rounded.range = intersection(rounded.range, {0, pi_v<double>});
+  const bool below = p.y.range.hi <= 0 && p.y.range.lo < 0;
+  const AffineForm any = AffineForm::anything_in({-1, 1});
+  return HalfAzimuth{any, any, below ? -rounded : rounded};
+}
+
 // lift_point over a box. The map of back vectors is that of half vectors for wo mirrored about the normal, and so
 // it knows b, the half vector of wo and of the mirrored wi, which the float formula takes from their sum. With p
 // as the exact sum, that one errs by 22 u |p|, by u along x, and by 1e-7 along z where wi.z is kept from 0. Where
@@ -210,6 +226,11 @@ DomainPointT<AffineForm> lift_box(const D& domain, const Vec3<AffineForm>& wo, c
       angle.range = intersection(angle.range, {0, pi_v<double> + off});
       out.geometry.azimuth_h = {widened(half_azimuth.y, off), widened(half_azimuth.x, off), angle};
     }
+    if (domain.kind == DomainKind::slope_star)
+      out.geometry.azimuth_h = star_azimuth(detail::Stretched<AffineForm>{AffineForm(domain.stretch)}, p);
+    if (domain.kind == DomainKind::scaled_star)
+      out.geometry.azimuth_h = star_azimuth(
+          detail::Scaled<AffineForm>{{AffineForm(domain.scale_x), AffineForm(domain.scale_y)}}, p);
     if (domain.kind == DomainKind::equal_area) out.area_by_cosine = AffineForm(2 * pi);
     return out;
   }

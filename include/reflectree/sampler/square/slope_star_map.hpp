@@ -66,6 +66,11 @@ REFLECTREE_INLINE T reflected_cosine(T twice, const Vec3<T>& wo, const SlopeStar
                                      T) {
   return twice - wo.z;
 }
+// d(wi) = 4 (wo.wh) d(wh), dx dy = 4 d(share). Times cos theta_i, or 1.
+template <class T>
+REFLECTREE_INLINE T slope_star_area(T cosine, T wo_n, T cos2_theta_h, T area, T d) {
+  return cosine * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (area * d * d);
+}
 template <class T, class Map>
 REFLECTREE_INLINE SlopeStar<T> star_of(const Map&, const Vec3<T>& wo, const Vec2<T>& along) {
   return slope_star(wo, along);
@@ -82,12 +87,14 @@ REFLECTREE_INLINE DomainPointT<T> lift_slopes(Vec3<T> wo, const Map& map, Vec2<T
   const T cos2_theta_h = T(1) / nn, twice = T(2) * wo_n * cos2_theta_h;
   const Vec3<T> wi{twice * tau.x - wo.x, twice * tau.y - wo.y,
                    max(reflected_cosine(twice, wo, star, along, y, d, cos2_theta_h), T(min_cos_theta_i))};
-  const T projected_area = wi.z * T(8 * pi) * wo_n * (cos2_theta_h * cos2_theta_h) * (map.area(r) * d * d);
+  const T projected_area = slope_star_area(wi.z, wo_n, cos2_theta_h, map.area(r), d);
   const T cos_theta_h = sqrt(cos2_theta_h);
   const Vec3<T> wh{tau.x * cos_theta_h, tau.y * cos_theta_h, cos_theta_h};
   DomainPointT<T> out{{wo, wi, wh, wo.z, wi.z, cos_theta_h, wo_n * cos_theta_h}, projected_area};
   if constexpr (requires { out.geometry.slopes; })
     out.geometry.slopes = {true, r, map.along(Vec2<T>{T(1), T(1)}), azimuth};
+  if constexpr (requires { out.area_by_cosine; })
+    out.area_by_cosine = slope_star_area(T(1), wo_n, cos2_theta_h, map.area(r), d);
   return out;
 }
 
