@@ -30,6 +30,7 @@ struct HalfSlopes {
   AffineForm r;
   Vec2<AffineForm> widths, azimuth;
   double turn = 0;  // by which the frame may be off, radians
+};
 // Of viewers whose azimuth matters what directions do not tell at the normal, and where azimuths leap: azimuths, radians,
 // of any branch, of the floats; and wi where wo is turned to azimuth 0, up to 16 roundings, where the map has it there.
 struct KnownViewer {

@@ -9,8 +9,6 @@ namespace reflectree::detail {
 
 namespace {
 
-constexpr int deepest = 15;  // levels of a tree, per axis
-
 struct Halves {
   std::array<PackedLeaf, 2> leaves;
   std::array<LeafProof, 2> proofs;
@@ -22,11 +20,10 @@ struct Halves {
 PackedLeaf half_of(const PackedLeaf& leaf, TreeSplit split, bool upper) {
   PackedLeaf half = leaf;
   const bool along_x = split == TreeSplit::x;
-  std::uint8_t& level = along_x ? half.level_x : half.level_y;
-  std::uint16_t& start = along_x ? half.x : half.y;
+  std::uint16_t& middle = along_x ? half.x : half.y;
   std::int8_t& slope = along_x ? half.slope_x : half.slope_y;
-  ++level;
-  if (upper) start = std::uint16_t(start + (0x8000U >> level));
+  const std::uint32_t quarter = half_width(middle) / 2;
+  middle = std::uint16_t(upper ? middle + quarter : middle - quarter);
   const double g = double(slope) / 128, sign = upper ? 1 : -1;
   slope = std::int8_t(std::clamp(std::lround(128 * g / (2 + sign * g)), -127L, 127L));
   half.height = float(double(leaf.height) * (1 + 0.5 * sign * g));
@@ -39,7 +36,7 @@ Halves halved(const SlabProof& slab, std::size_t k, const EnclosedField& field, 
   Halves best;
   best.volume = double(area_of(leaf)) * slab.proofs[k].bound;
   for (const TreeSplit split : {TreeSplit::x, TreeSplit::y}) {
-    if ((split == TreeSplit::x ? leaf.level_x : leaf.level_y) >= deepest) continue;
+    if (half_width(split == TreeSplit::x ? leaf.x : leaf.y) < 2) continue;  // as small as cells get
     Halves tried;
     tried.split = split;
     bool proved = true;
