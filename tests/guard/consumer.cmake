@@ -12,7 +12,7 @@ function(step)
   endif()
 endfunction()
 
-set(options "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS} -O1" -DCMAKE_BUILD_TYPE=None)
+set(options "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=-O1 ${FLAGS}" -DCMAKE_BUILD_TYPE=None)
 if(WAY STREQUAL "find_package")
   file(REMOVE_RECURSE ${folder})
   step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
