@@ -31,8 +31,8 @@ struct HalfSlopes {
   Vec2<AffineForm> widths, azimuth;
   double turn = 0;  // by which the frame may be off, radians
 };
-// Of viewers whose azimuth matters what directions do not tell at the normal, and where azimuths leap: azimuths, radians,
-// of any branch, of the floats; and wi where wo is turned to azimuth 0, up to 16 roundings, where the map has it there.
+// What directions do not tell at the normal, and where azimuths leap, of viewers whose azimuth matters. Azimuths are
+// those of the floats, in radians, of any branch; wi is there where the map turns wo to azimuth 0, up to 16 roundings.
 struct KnownViewer {
   AffineForm sin_theta_o, azimuth;
   std::optional<AffineForm> azimuth_h = std::nullopt;

@@ -175,7 +175,7 @@ HalfSlopes EnclosedViewer::slopes_from_axis(HalfSlopes h) const {
 
 // g in the frame of the domain. Turns by an axis or by phi_o round: azimuths err by 8 u or so.
 KnownViewer EnclosedViewer::known_of(const ShadingGeometry<AffineForm>& g, const ViewerForms& v,
-                                          ViewerImage image) const {
+                                     ViewerImage image) const {
   constexpr double rounding = 2e-6;
   const bool framed = viewer_.sin_axis == 0 && viewer_.cos_axis > 0;
   const double axis = std::atan2(double(viewer_.sin_axis), double(viewer_.cos_axis));

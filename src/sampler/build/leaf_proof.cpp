@@ -12,7 +12,8 @@ namespace {
 // height and its mass are rounded.
 constexpr double margin = 0x1p-19;
 
-// Of theta_o, across the leaf, of what else is known, and of the star's angle. Floats beside narrower boxes need not lie in them.
+// Of theta_o, across the leaf, of what else is known, and of the star's angle. Floats beside narrower boxes need not
+// lie in them.
 constexpr double smallest_width[most_axes] = {1e-10, 0x1p-23, 0x1p-23, 1e-7, 1e-7, 1e-7, 1e-3, 1};
 
 struct OpenBox {
