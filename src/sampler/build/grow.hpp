@@ -40,7 +40,10 @@ struct GrowthRules {
   // more than a few times the leaves that it has: what it costs may come of its width. 0: no such mercy.
   float enough = 0;
 
-  float goal_of(const Slab& slab) const { return grazing_goal > 0 && is_grazing(slab) ? grazing_goal : goal; }
+  float goal_of(const Slab& slab) const {
+    const float of_weights = grazing_goal > 0 && is_grazing(slab) ? grazing_goal : goal;
+    return slab.shown > 1 ? sqrt(1 + (sqr(of_weights) - 1) / slab.shown) : of_weights;
+  }
 };
 
 // Grows until every slab meets the goal, or the effort is spent; a halved slab's halves take its place.
