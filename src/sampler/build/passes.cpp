@@ -57,19 +57,26 @@ GrowthRules exact_rules(const Survey& survey, const BuildOptions& options) {
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   // Where wo has two angles slabs are many, and their attack costs as much as their growth.
   if (!survey.field.frame.isotropic()) rules.effort_share = 0.5f, rules.leaves_kept = 400;
-  if (has_many_slabs(survey)) rules.analyse = analyse_exact_closely;
+  if (has_many_slabs(survey)) rules.analyse = analyse_exact_closely, rules.of_all_mass = true;
   return rules;
 }
 
+bool is_dear(const Slab& slab, const BuildOptions& options) {
+  return total_of(slab).cost > double(options.expected_trials);
+}
 bool any_is_dear(const std::vector<Slab>& slabs, const BuildOptions& options) {
-  return std::any_of(slabs.begin(), slabs.end(),
-                     [&](const Slab& slab) { return total_of(slab).cost > double(options.expected_trials); });
+  return std::any_of(slabs.begin(), slabs.end(), [&](const Slab& slab) { return is_dear(slab, options); });
 }
 
 // What grows after an attack is attacked, too.
 void grow_dear(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options,
                GrowthRules& rules) {
-  rules.goal -= attack_takes(survey) * (options.expected_trials - 1);
+  const float lower = attack_takes(survey) * (options.expected_trials - 1);
+  if (has_many_slabs(survey)) {
+    for (Slab& slab : slabs) slab.lowered += is_dear(slab, options) ? lower : 0.f;
+  } else {
+    rules.goal -= lower;
+  }
   grow(slabs, survey, rules);
   for (Slab& slab : slabs) {
     if (slab.nodes.size() > slab.attacked) slab.overshoot = 1;
@@ -151,7 +158,7 @@ std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& optio
   const float share = survey.field.frame.isotropic() ? 0.8f : has_many_slabs(survey) ? 1 : 0.88f;
   GrowthRules rules{sqrt(1 + share * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
   if (!survey.field.frame.isotropic()) {
-    rules.leaves_kept = 150;
+    rules.leaves_kept = 150, rules.of_all_mass = has_many_slabs(survey);
     rules.grazing_goal = sqrt(1 + more_at_grazing * share * options.one_shot_variance);
     rules.worst_view = worst_to_asked * options.one_shot_variance;
   }
