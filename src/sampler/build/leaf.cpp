@@ -2,6 +2,7 @@
 #include "leaf.hpp"
 
 #include <cmath>
+#include <cstdlib>
 
 namespace reflectree::detail {
 
