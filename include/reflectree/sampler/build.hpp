@@ -13,7 +13,7 @@ namespace reflectree {
 struct BuildOptions {
   Target target;
   float expected_trials = 1.25f;    // of exact mode, for every wo
-  float one_shot_variance = 0.01f;  // relative, of one-shot weights; anisotropic: 2.5 x beyond 80 deg
+  float one_shot_variance = 0.01f;  // relative, of one-shot weights; anisotropic: 4 x beyond 80 deg
   float albedo_error = 1e-4f;       // relative
   std::optional<Domain> domain;     // default: the cheapest, found by trial
   std::uint64_t seed = 1;

@@ -177,8 +177,9 @@ SamplerData build_of(const Subject& subject, const BuildOptions& the_options, co
   std::vector<Ridge> ridges;
   bool patient = false;
   for (int n = 1;; ++n) {
-    // A quarter is left for one-shot trees.
-    Effort effort{0, options.max_evaluations / 4 * 3};
+    // A quarter is left for one-shot trees, a fifth where wo has two angles.
+    const std::uint64_t parts = seen.frame.isotropic() ? 4 : 5;
+    Effort effort{0, options.max_evaluations / parts * (parts - 1)};
     host.stage("choosing the domain");
     if (options.domain) check_domain(*options.domain, seen.frame, traits.name);
     DomainChoice choice =

@@ -201,7 +201,9 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   const float goal = rules.goal_of(slab), budget = goal - 1;
   const float ideal = total(slab, &Leaf::ideal), cost = total(slab, &Leaf::cost);
   const bool nothing = cost <= 1.001f * floor_share;  // f is 0 in the slab
-  const bool fits = nothing || cost <= goal * ideal;
+  const float allowed_cost =
+      rules.of_all_mass ? ideal + budget * max(ideal, expected_mass(slab)) : goal * ideal;
+  const bool fits = nothing || cost <= allowed_cost;
   // A stated error is far above the true one: a large one must not hide a lobe that no grid has seen.
   const float allowed = max(rules.mass_error, 0.1f * budget) + 2 * min(albedo_error, 0.01f);
   std::vector<std::uint32_t> blind;
@@ -227,7 +229,7 @@ Step next_step(Slab& slab, SlabState& state, const GrowthRules& rules, bool may_
   if (met || state.leaves >= state.most) return {};
   if (!blind.empty()) return {-1, blind};
   const float fair = 1.5f * budget * ideal / float(state.leaves);  // equal shares are the optimum
-  return {-1, dearest_leaves(slab, rules, cost - goal * ideal, fair)};
+  return {-1, dearest_leaves(slab, rules, cost - allowed_cost, fair)};
 }
 
 // Replaces each halved slab by two fresh ones; the tasks already gathered move with their slabs.

@@ -32,6 +32,9 @@ struct GrowthRules {
   // No slab is halved where that would leave less effort than so many leaves for every slab that asks for
   // more; and none grows beyond what that effort allows for each. 0: whoever comes first.
   std::size_t leaves_kept = 0;
+  // Slabs are done by the mass that they should see, in place of what they see: those that oversee a lobe look for
+  // it before their leaves become many.
+  bool of_all_mass = false;
   float grazing_goal = 0;  // of grazing slabs; 0: the same
   // A slab below grazing in which the one-shot weights of one view vary by more than this is halved, though the
   // slab as a whole has met its goal. 0: no view is asked.
@@ -40,7 +43,10 @@ struct GrowthRules {
   // more than a few times the leaves that it has: what it costs may come of its width. 0: no such mercy.
   float enough = 0;
 
-  float goal_of(const Slab& slab) const { return grazing_goal > 0 && is_grazing(slab) ? grazing_goal : goal; }
+  float goal_of(const Slab& slab) const {
+    const float of_weights = grazing_goal > 0 && is_grazing(slab) ? grazing_goal : goal;
+    return slab.shown > 1 ? sqrt(1 + (sqr(of_weights) - 1) / slab.shown) : of_weights - slab.lowered;
+  }
 };
 
 // Grows until every slab meets the goal, or the effort is spent; a halved slab's halves take its place.

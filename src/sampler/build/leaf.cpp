@@ -2,6 +2,7 @@
 #include "leaf.hpp"
 
 #include <cmath>
+#include <cstdlib>
 
 namespace reflectree::detail {
 
@@ -77,9 +78,37 @@ float grid_shape(float slope_x, float slope_y, int j, int i) {
   return (1 + slope_x * lobatto_nodes[i]) * (1 + slope_y * lobatto_nodes[j]);
 }
 
-}  // namespace
+// What a shape must be raised to.
+float bound_of(const Values& envelope, float slope_x, float slope_y) {
+  float bound = 0;
+  for (int j = 0; j < grid_size; ++j) {
+    for (int i = 0; i < grid_size; ++i)
+      bound = max(bound, envelope[j][i] / grid_shape(slope_x, slope_y, j, i));
+  }
+  return bound;
+}
 
-void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
+// Slopes of the lowest bound, from those that the leaf has. The logarithm of v / ((1 + g_x s)(1 + g_y t)) is
+// convex in both slopes, and so is the largest of such: steps downhill end near the one minimum.
+void lower(Leaf& leaf, const Values& envelope) {
+  constexpr float steepest = 0.96875f;
+  for (int step = 16; step > 0; step /= 2) {
+    for (int moves = 0; moves < 4; ++moves) {
+      const float from_x = leaf.slope_x, from_y = leaf.slope_y, before = leaf.height;
+      for (int x = -step; x <= step; x += step) {
+        for (int y = -step; y <= step; y += step) {
+          const float gx = clamp(from_x + float(x) / 128, -steepest, steepest);
+          const float gy = clamp(from_y + float(y) / 128, -steepest, steepest);
+          const float bound = bound_of(envelope, gx, gy);
+          if (bound < leaf.height) leaf.height = bound, leaf.slope_x = gx, leaf.slope_y = gy;
+        }
+      }
+      if (!(leaf.height < before)) break;
+    }
+  }
+}
+
+void analyse_bound(Leaf& leaf, Grid grid, std::span<const View> views, bool closely) {
   const auto at = [&](std::size_t k, int j, int i) {
     return grid[k * grid_points + std::size_t(j * grid_size + i)];
   };
@@ -102,13 +131,11 @@ void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
     for (const float part_y : {0.f, 0.75f, 1.f}) {
       const float gx = std::round(part_x * line.slope_x * 128) / 128,
                   gy = std::round(part_y * line.slope_y * 128) / 128;
-      float bound = 0;
-      for (int j = 0; j < grid_size; ++j) {
-        for (int i = 0; i < grid_size; ++i) bound = max(bound, envelope[j][i] / grid_shape(gx, gy, j, i));
-      }
+      const float bound = bound_of(envelope, gx, gy);
       if (bound < leaf.height) leaf.height = bound, leaf.slope_x = gx, leaf.slope_y = gy;
     }
   }
+  if (closely) lower(leaf, envelope);
   std::vector<float> bounds(views.size());
   float peak = -1;
   for (std::size_t k = 0; k < views.size(); ++k) {
@@ -123,6 +150,15 @@ void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
     }
     bounds[k] = bound;
   }
+  leaf.far_peak = leaf.peak;
+  float far_peak = -1;
+  for (std::size_t p = 0; closely && p < grid.size(); ++p) {
+    const int i = int(p % grid_size), j = int(p / grid_size % grid_size);
+    if (std::abs(i - leaf.peak % grid_size) <= 1 && std::abs(j - leaf.peak / grid_size % grid_size) <= 1)
+      continue;
+    const float ratio = grid[p].upper / grid_shape(leaf.slope_x, leaf.slope_y, j, i);
+    if (ratio > far_peak) far_peak = ratio, leaf.far_peak = std::uint16_t(p);
+  }
   const float area = area_share(leaf.cell);
   leaf.ideal = area * mean;
   // What slabs would cost that are thin along one coordinate.
@@ -135,6 +171,15 @@ void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
   if (towers(leaf, highest)) leaf.split_x = close_in_along_x(leaf);
   leaf.height = max(leaf.height, floor_share);
   leaf.cost = area * leaf.height;
+}
+
+}  // namespace
+
+void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views) {
+  analyse_bound(leaf, grid, views, false);
+}
+void analyse_exact_closely(Leaf& leaf, Grid grid, std::span<const View> views) {
+  analyse_bound(leaf, grid, views, true);
 }
 
 void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views) {

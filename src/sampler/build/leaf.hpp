@@ -102,7 +102,9 @@ struct Leaf {
   Shares known_cost{};  // the part of the cost that slabs narrower along an axis save
   float height = 0;     // bound of T / (albedo q), or its root mean square
   bool split_x = false;
-  std::uint16_t peak = 0;          // exact: index in the grid of the largest T / (albedo q)
+  // Exact: index in the grid of the largest T / (albedo q); and of the largest that is not beside it, where
+  // shapes fit closely and so touch in several places.
+  std::uint16_t peak = 0, far_peak = 0;
   float slope_x = 0, slope_y = 0;  // q = (1 + slope_x s)(1 + slope_y t)
   // The largest T / albedo seen and where; a child that holds the place inherits it, so that what a probe
   // has found once is not lost between the points of a finer grid.
@@ -137,6 +139,8 @@ bool close_in_along_x(const Leaf& leaf);
 float shape(const Leaf& leaf, const Box& box, Vec2<float> p);
 
 void analyse_exact(Leaf& leaf, Grid grid, std::span<const View> views);
+// The same with the lowest bound that any shape allows.
+void analyse_exact_closely(Leaf& leaf, Grid grid, std::span<const View> views);
 void analyse_one_shot(Leaf& leaf, Grid grid, std::span<const View> views);
 
 }  // namespace reflectree::detail

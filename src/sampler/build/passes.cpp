@@ -38,29 +38,45 @@ std::size_t leaf_count(const std::vector<Slab>& slabs) {
 
 namespace {
 
-constexpr float attack_takes = 0.06f;  // of the trials allowed, that one pass of an attack may cost
+// Single functions for which wo has two angles, but for those whose bounds need no attack.
+bool has_many_slabs(const Survey& survey) {
+  const Field& field = survey.field;
+  return !field.frame.isotropic() && !field.family && field.patches.empty();
+}
 
-// Whether slabs may be spared and halved after an attack. Of single functions all are grown and attacked again:
-// where they were spared, bounds of GGX 0.05 x 0.3 missed 1.1e-6.
-bool is_crowded(const Survey& survey) { return survey.field.family.has_value(); }
+// Of the trials allowed, by which goals fall after each pass of an attack. Where slabs are many only dear ones
+// grow again, and small steps leave each as near as can be to what was asked for.
+float attack_takes(const Survey& survey) { return has_many_slabs(survey) ? 0.02f : 0.06f; }
+
+// Whether slabs may be spared and halved after an attack. Of isotropic functions all are grown and attacked again.
+bool is_crowded(const Survey& survey) { return survey.field.family || has_many_slabs(survey); }
 
 GrowthRules exact_rules(const Survey& survey, const BuildOptions& options) {
-  const float spare = 0.96f;  // of the budget: the attack will use the rest
+  // Of the budget: the attack will use the rest.
+  const float spare = has_many_slabs(survey) ? 0.98f : 0.96f;
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   // Where wo has two angles slabs are many, and their attack costs as much as their growth.
   if (!survey.field.frame.isotropic()) rules.effort_share = 0.5f, rules.leaves_kept = 400;
+  if (has_many_slabs(survey)) rules.analyse = analyse_exact_closely, rules.of_all_mass = true;
   return rules;
 }
 
+bool is_dear(const Slab& slab, const BuildOptions& options) {
+  return total_of(slab).cost > double(options.expected_trials);
+}
 bool any_is_dear(const std::vector<Slab>& slabs, const BuildOptions& options) {
-  return std::any_of(slabs.begin(), slabs.end(),
-                     [&](const Slab& slab) { return total_of(slab).cost > double(options.expected_trials); });
+  return std::any_of(slabs.begin(), slabs.end(), [&](const Slab& slab) { return is_dear(slab, options); });
 }
 
 // What grows after an attack is attacked, too.
 void grow_dear(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options,
                GrowthRules& rules) {
-  rules.goal -= attack_takes * (options.expected_trials - 1);
+  const float lower = attack_takes(survey) * (options.expected_trials - 1);
+  if (has_many_slabs(survey)) {
+    for (Slab& slab : slabs) slab.lowered += is_dear(slab, options) ? lower : 0.f;
+  } else {
+    rules.goal -= lower;
+  }
   grow(slabs, survey, rules);
   for (Slab& slab : slabs) {
     if (slab.nodes.size() > slab.attacked) slab.overshoot = 1;
@@ -71,10 +87,12 @@ void grow_dear(std::vector<Slab>& slabs, const Survey& survey, const BuildOption
 void attack(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options, GrowthRules rules,
             BuildReport& report) {
   constexpr float accepted_overshoot = 2e-7f;
-  constexpr int max_passes = 8;
+  const int max_passes = has_many_slabs(survey) ? 16 : 8;  // late ones look at a few slabs
   for (int pass = 0; pass < max_passes; ++pass) {
-    // A lobe that was met by chance is better looked at from the start than grown around blindly.
-    if (survey.towers && !survey.towers->empty() && report.overshoot_mass > 0.02f) break;
+    // A lobe that was met by chance is better looked at from the start than grown around blindly, where ridges
+    // can be followed.
+    const bool follows = survey.towers && survey.field.whole().axes == 1;
+    if (follows && !survey.towers->empty() && report.overshoot_mass > 0.02f) break;
     maximise(slabs, survey);
     // However many leaves there are, a pass has an end.
     const auto leaves = float(leaf_count(slabs));
@@ -127,8 +145,8 @@ namespace {
 // mode may have more variance than was asked for.
 constexpr float more_at_grazing = 4;
 // At a corner of a slab weights vary by up to six times as much as on average. Twice is promised to viewers, and
-// few stand at a corner: with three the worst of 150 keep it.
-constexpr float worst_to_mean = 3;
+// few stand at a corner: with this the worst of 150 keep it.
+constexpr float worst_to_asked = 2.3f;
 bool is_loose(const Slab& slab) { return slab.box.axes > 1 && slab.box.slot[1] == 1 && is_grazing(slab); }
 
 }  // namespace
@@ -136,13 +154,13 @@ bool is_loose(const Slab& slab) { return slab.box.axes > 1 && slab.box.slot[1] =
 std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& options) {
   std::vector<Slab> slabs = first_slabs(survey);
   constexpr int max_passes = 4;
-  // Leaves are dearer where wo has two angles; 0.95 left medians of 0.0104.
-  const float share = survey.field.frame.isotropic() ? 0.8f : 0.88f;
+  // Leaves are dearer where wo has two angles. All of it where weights themselves are asked (probe_density).
+  const float share = survey.field.frame.isotropic() ? 0.8f : has_many_slabs(survey) ? 1 : 0.88f;
   GrowthRules rules{sqrt(1 + share * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
   if (!survey.field.frame.isotropic()) {
-    rules.leaves_kept = 150;
+    rules.leaves_kept = 150, rules.of_all_mass = has_many_slabs(survey);
     rules.grazing_goal = sqrt(1 + more_at_grazing * share * options.one_shot_variance);
-    rules.worst_view = worst_to_mean * share * options.one_shot_variance;
+    rules.worst_view = worst_to_asked * options.one_shot_variance;
   }
   rules.progress = 0.9f, rules.progress_end = 0.99f;
   survey.host.stage("growing one-shot trees");

@@ -29,8 +29,11 @@ struct Slab {
   std::vector<Mark> marks;
   std::vector<Node> nodes;  // nodes[0] is the root
   SlabPatches patches = {};
-  std::size_t attacked = 0;  // nodes whose bounds were attacked
+  std::size_t attacked = 0;  // nodes whose bounds were attacked; of one-shot trees, whose weights were probed
   float overshoot = 1;       // of exact trees, as last estimated
+  float lowered = 0;         // by how much the goal of an exact tree fell, since attacks left it too dear
+  // Of one-shot trees: how many times the variance that the grids of the leaves see probes show; 1 at least.
+  float shown = 1;
 };
 
 // A slab with its views and an unsplit root.

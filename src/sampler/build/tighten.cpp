@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "canonical.hpp"
+#include "grow.hpp"
 #include "reflectree/math/random.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 
@@ -126,10 +127,13 @@ void maximise(std::vector<Slab>& slabs, const Survey& survey) {
     for (std::size_t i = slab.attacked; i < slab.nodes.size(); ++i) {
       Node& node = slab.nodes[i];
       if (node.split != TreeSplit::leaf) continue;
-      // From the largest ratio of the grid, and from the largest T seen by anyone.
+      // From the largest ratios of the grid, and from the largest T seen by anyone.
       Leaf& leaf = node.leaf;
       const Box box = box_of(leaf.cell, field.domain);
       climbers.push_back(start_at(slab, leaf, grid_place(slab.views, leaf.peak), 0, 0.2f, field.domain));
+      if (leaf.far_peak != leaf.peak)
+        climbers.push_back(
+            start_at(slab, leaf, grid_place(slab.views, leaf.far_peak), 0, 0.2f, field.domain));
       if (!(leaf.seen > 0)) continue;  // nobody saw anything: there is no place to start from
       climbers.push_back(start_at(slab, leaf, place_in(slab, box, leaf.seen_by, leaf.seen_at),
                                   leaf.seen / shape(leaf, box, leaf.seen_at), 0.1f, field.domain));
@@ -265,22 +269,40 @@ void raise_at(std::vector<Slab>& slabs, std::span<const FieldPoint> points, cons
   }
 }
 
+namespace {
+
+// What uniform probes say of the weights of a slab's density h q. The three sums err alike, so that what they say
+// together errs little.
+struct Weighed {
+  double density = 0, target = 0, square = 0;  // integrals of h q, of T / albedo, and of its square over h q
+  double variance() const { return target > 0 ? density * square / sqr(target) - 1 : 0; }
+};
+
+}  // namespace
+
 void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& survey) {
   const Field& field = survey.field;
   if (!field.patches.empty()) return;
   constexpr double doubtful = 1.5;  // more than the scatter of honest leaves
   // Twice as many where slabs spread over two angles of wo.
-  const std::size_t times = field.frame.isotropic() ? 1 : 2;
-  const auto count = [times](const Slab& slab, std::uint32_t i) {
+  const bool two_angles = !field.frame.isotropic();
+  const std::size_t times = two_angles ? 2 : 1;
+  // And no slab twice that has not grown.
+  const auto is_known = [&](const Slab& slab) { return two_angles && slab.attacked == slab.nodes.size(); };
+  const auto count = [&](const Slab& slab, std::uint32_t i) {
+    if (is_known(slab)) return std::size_t(0);
     return times * std::size_t(64 + 8192 * area_share(slab.nodes[i].leaf.cell));
   };
+  std::vector<Weighed> weighed(slabs.size());
   const auto visit = [&](const ProbedLeaf& t, const std::vector<FieldPoint>& points,
                          const std::vector<float>& ratios) {
     Leaf& leaf = slabs[t.slab].nodes[t.node].leaf;
     const Box box = box_of(leaf.cell, field.domain);
     double sum = 0, sum2 = 0;  // of T^2 / (albedo^2 q), whose mean is the square of the best share
+    double shapes = 0, targets = 0;
     for (std::size_t i = t.first; i < t.first + t.count; ++i) {
-      const float v = ratios[i] * shape(leaf, box, points[i].p);
+      const float q = shape(leaf, box, points[i].p), v = ratios[i] * q;
+      shapes += double(q), targets += double(v);
       const double square = double(ratios[i]) * double(v);
       sum += square, sum2 += square * square;
       if (v > leaf.seen) leaf.note(v, known_of(points[i].viewer(), slabs[t.slab].box), points[i].p);
@@ -288,13 +310,27 @@ void probe_density(std::vector<Slab>& slabs, std::uint64_t seed, const Survey& s
     const double n = double(t.count), square = sum / n;
     const double error = std::sqrt(max(sum2 / n - square * square, 0.) / n);
     const float area = area_share(leaf.cell);
+    const double share = double(area) / n;
+    weighed[t.slab].density += share * double(leaf.height) * shapes;
+    weighed[t.slab].target += share * targets;
+    weighed[t.slab].square += share * sum / double(leaf.height);
     const double believed = sqr(double(leaf.cost / area));
     if (square <= doubtful * believed || square - error <= believed) return;
     leaf.cost = area * float(std::sqrt(square));
     leaf.height = max(leaf.height, float(std::sqrt(square)));
     leaf.split_x = close_in_along_x(leaf);
   };
+  std::vector<double> believed;
+  for (const Slab& slab : slabs) believed.push_back(total_of(slab).variance());
   probe_leaves(slabs, seed, &FieldValue::mean, survey, count, visit);
+  if (!two_angles || field.family) return;
+  constexpr float most = 4;  // more is a lobe between the points, which the leaves know by now
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    if (is_known(slabs[s])) continue;
+    slabs[s].attacked = slabs[s].nodes.size();
+    if (is_grazing(slabs[s]) || !(believed[s] > 0)) continue;  // nothing is promised there
+    slabs[s].shown = clamp(float(weighed[s].variance() / believed[s]), 1.f, most);
+  }
 }
 
 }  // namespace reflectree::detail

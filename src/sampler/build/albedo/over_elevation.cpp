@@ -184,30 +184,63 @@ class TableBuilder {
     }
     return misses;
   }
+  // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less. What the parent's
+  // polynomial of degree 4 missed there is known, too, and this half misses less.
+  struct Miss {
+    double by_parabola = 0, by_parent = 0, scale = 0;
+  };
+  Miss miss_of(const Panel& panel) const {
+    const std::array<double, 5> v = values_of(panel);
+    Miss miss;
+    for (const int i : {1, 3}) {
+      const auto k = std::size_t(i);
+      miss.by_parabola = max(miss.by_parabola, std::abs(interpolate(v, 2, i) - v[k]));
+      miss.by_parent = max(miss.by_parent, std::abs(panel.predicted[k / 2] - v[k]));
+      miss.scale = max(miss.scale, v[k]);
+    }
+    return miss;
+  }
+  // Beside the horizon anisotropic functions are allowed ten times as much here, too, as where misses are judged.
+  double times(const Panel& panel) const {
+    return field_.frame.isotropic() ? 1 : times_allowed(cosine_of(panel.lo));
+  }
+  bool is_rough(const Panel& panel, const Miss& miss) const {
+    const double allowed = interpolation_error() * times(panel) * miss.scale;
+    return miss.by_parabola > 4 * allowed && miss.by_parent > 3 * allowed && !panel.jump;
+  }
+  // A node whose integral stepped over something leaves the panels beside it rough, however often they are
+  // halved. Of anisotropic functions the nodes of panels that stay rough are integrated again, from finer cells.
+  void review() {
+    constexpr int suspicious = 2;
+    if (field_.frame.isotropic() || told_ || fine_ || error_ > asked_ ||
+        effort_.evaluations - start_ > budget_)
+      return;
+    std::vector<double> doubtful;
+    for (const Panel& panel : open_) {
+      if (panel.level < suspicious || !is_rough(panel, miss_of(panel))) continue;
+      for (int i = 0; i < 5; ++i) {
+        if (reviewed_.insert(node_of(panel, i)).second) doubtful.push_back(node_of(panel, i));
+      }
+    }
+    integrate_nodes(doubtful, 2);
+  }
   void refine(bool with_pilots) {
     for (; !open_.empty(); with_pilots = false) {
       integrate_open(with_pilots);
+      review();
       std::vector<Panel> next;
       const bool spent = effort_.evaluations - start_ > budget_;
       for (const Panel& panel : open_) {
-        // What the parabola misses at the odd nodes; the polynomial of degree 4 misses far less. What the
-        // parent's polynomial of degree 4 missed there is known, too, and this half misses less.
-        const std::array<double, 5> v = values_of(panel);
-        double miss = 0, parent_miss = 0, scale = 0;
-        for (const int i : {1, 3}) {
-          const auto k = std::size_t(i);
-          miss = max(miss, std::abs(interpolate(v, 2, i) - v[k]));
-          parent_miss = max(parent_miss, std::abs(panel.predicted[k / 2] - v[k]));
-          scale = max(scale, v[k]);
-        }
-        const double allowed = interpolation_error() * scale;
-        const bool rough = miss > 4 * allowed && parent_miss > 3 * allowed && !panel.jump;
-        if (rough && spent && scale > 0) noise_ = max(noise_, miss / scale);
+        const Miss miss = miss_of(panel);
+        const double allowed = interpolation_error() * miss.scale;
+        const bool rough = is_rough(panel, miss);
+        if (rough && spent && miss.scale > 0)
+          noise_ = max(noise_, miss.by_parabola / (miss.scale * times(panel)));
         if (rough && !spent && panel.level < deepest) {
           halve(panel, next);
         } else {
           closed_.push_back(panel);
-          closed_.back().bend = allowed > 0 && !panel.jump ? miss / allowed : 0;
+          closed_.back().bend = allowed > 0 && !panel.jump ? miss.by_parabola / allowed : 0;
         }
       }
       open_ = std::move(next);
@@ -219,7 +252,7 @@ class TableBuilder {
     halves.push_back({p.lo, mid, p.level + 1, false, {interpolate(v, 1, 0.5), interpolate(v, 1, 1.5)}});
     halves.push_back({mid, p.hi, p.level + 1, false, {interpolate(v, 1, 2.5), interpolate(v, 1, 3.5)}});
   }
-  void integrate_nodes(const std::vector<double>& thetas) {
+  void integrate_nodes(const std::vector<double>& thetas, int finer = 1) {
     std::vector<float> cosines;
     for (const double theta : thetas) cosines.push_back(cosine_of(theta));
     Integrals a;
@@ -227,9 +260,10 @@ class TableBuilder {
       for (const Viewer& viewer : viewers_at(cosines))
         a.values.push_back(double(field_.target.scale) * told_(field_.to_caller(viewer.wo)));
     } else {
-      a = integrate(field_, viewers_at(cosines),
-                    {cubature_error(), cells_x_, cells_y_, rim_, progress, progress_end, max_regions_}, host_,
-                    effort_);
+      a = integrate(
+          field_, viewers_at(cosines),
+          {cubature_error(), finer * cells_x_, finer * cells_y_, rim_, progress, progress_end, max_regions_},
+          host_, effort_);
     }
     for (std::size_t i = 0; i < thetas.size(); ++i) nodes_[thetas[i]] = a.values[i] / factor(thetas[i]);
     worst_ = max(worst_, a.error);
@@ -278,6 +312,7 @@ class TableBuilder {
   double first_ = 0, worst_ = 0, missed_ = 0, noise_ = 0;  // worst: of the integrals, as they estimate it
   std::vector<Panel> open_, closed_;
   std::map<double, double> nodes_;
+  std::set<double> reviewed_;
 };
 
 }  // namespace
