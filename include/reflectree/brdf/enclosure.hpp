@@ -16,7 +16,7 @@ namespace reflectree {
 
 // The geometry over a box has more where the map knows it (enclosed_map.hpp): the half vector of wo and of wi
 // mirrored about the normal, and its cosine with wo; the azimuth of wh, which wh does not tell where it meets the
-// normal: cosine and sine up to 1e-6 of themselves, and radians.
+// normal: cosine and sine up to 1e-6 of themselves, and radians; of maps of directions the azimuth of wi, radians.
 struct BackVector {
   Vec3<AffineForm> wh;
   AffineForm cos_theta_d;
@@ -44,6 +44,7 @@ struct ShadingGeometry<AffineForm> {
   AffineForm cos_theta_o, cos_theta_i, cos_theta_h, cos_theta_d;
   std::optional<BackVector> back = std::nullopt;
   std::optional<HalfAzimuth> azimuth_h = std::nullopt;
+  std::optional<AffineForm> azimuth_i = std::nullopt;
   HalfSlopes slopes = {};
   std::optional<KnownViewer> viewer = std::nullopt;
 };
@@ -107,6 +108,7 @@ inline ShadingGeometry<AffineForm> mirrored_in_plane(ShadingGeometry<AffineForm>
   g.wi.y = -g.wi.y, g.wh.y = -g.wh.y;
   if (g.back) g.back->wh.y = -g.back->wh.y;
   if (g.azimuth_h) g.azimuth_h->sine = -g.azimuth_h->sine, g.azimuth_h->angle = -g.azimuth_h->angle;
+  if (g.azimuth_i) g.azimuth_i = -*g.azimuth_i;
   return g;
 }
 
@@ -140,6 +142,19 @@ inline AffineForm sin2_of_slopes(const ShadingGeometry<AffineForm>& g, const Aff
   const AffineForm c2 = sqr(h.azimuth.x), s2 = sqr(h.azimuth.y);
   const AffineForm around = narrower(narrower(a * c2 + b * s2, a + (b - a) * s2), b + (a - b) * c2);
   return narrower(plain, widened(sqr(h.r * g.wh.z) * around, off));
+}
+
+// The azimuth of wh where wo has none. wh is a sum of wo and wi with positive weights, and
+// so its azimuth lies between theirs, 0 and that of wi, however little is known of wh about the normal. Where the two may point apart the sum is mended, and this is not said.
+inline AffineForm between_azimuths(AffineForm azimuth_h, const ShadingGeometry<AffineForm>& g) {
+  if (!g.azimuth_i || g.wo.y.range.magnitude() > 0 || g.wo.x.range.lo < 0) return azimuth_h;
+  const RealInterval cosine = g.wo.x.range * g.wi.x.range + g.wo.z.range * g.wi.z.range,
+                     i = g.azimuth_i->range;
+  if (!(cosine.lo > 0.1)) return azimuth_h;
+  constexpr double off = 2e-6;
+  const RealInterval range = intersection(azimuth_h.range, hull({-off, off}, {i.lo - off, i.hi + off}));
+  if (range.lo <= range.hi) azimuth_h.range = range;
+  return azimuth_h;
 }
 
 // What encloses a function of three channels (a grey one has three that are equal): every value that it returns

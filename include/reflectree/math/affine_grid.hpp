@@ -206,10 +206,12 @@ AffineForm GridPieces<d, most>::by_corners(const Corner& corner, double share) c
   double largest = 0;
   // Slopes: along each axis the mean rise of the box's edges.
   std::array<double, d> alpha{};
+  std::array<RealInterval, corners> outer;
   for (std::size_t bits = 0; bits < corners; ++bits) {
     std::array<int, d> at{};
     for (std::size_t a = 0; a < d; ++a) at[a] = (bits >> a & 1U) != 0 ? count_[a] - 1 : 0;
-    const double v = corner(at, largest).middle();
+    outer[bits] = corner(at, largest);
+    const double v = outer[bits].middle();
     for (std::size_t a = 0; a < d; ++a) {
       const double width = at_[a].range.hi - at_[a].range.lo;
       if (width > 0 && !many_[a] && at_[a].error < detail::infinity)
@@ -222,9 +224,14 @@ AffineForm GridPieces<d, most>::by_corners(const Corner& corner, double share) c
   RealInterval offset{detail::infinity, -detail::infinity}, range = offset;
   std::array<int, d> at{};
   for (bool more = true; more;) {
-    const RealInterval v = corner(at, largest);
+    std::size_t bits = 0;
+    bool is_outer = true;
     double line = 0;
-    for (std::size_t a = 0; a < d; ++a) line += alpha[a] * place_[a][std::size_t(at[a])].x;
+    for (std::size_t a = 0; a < d; ++a) {
+      line += alpha[a] * place_[a][std::size_t(at[a])].x;
+      if (at[a] > 0) bits |= std::size_t(1) << a, is_outer = is_outer && at[a] == count_[a] - 1;
+    }
+    const RealInterval v = is_outer ? outer[bits] : corner(at, largest);
     offset = hull(offset, RealInterval(v.lo - line, v.hi - line)), range = hull(range, v);
     more = false;
     for (std::size_t a = 0; a < d && !more; ++a) {

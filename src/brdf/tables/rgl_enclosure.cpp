@@ -3,16 +3,15 @@
 
 #include <array>
 
-#include "bent_pieces.hpp"
 #include "channel_reduction.hpp"
 #include "reflectree/brdf/tables/enclosed_difference.hpp"
 #include "reflectree/math/affine_grid.hpp"
 #include "rgl_places.hpp"
 #include "rgl_slices.hpp"
+#include "rgl_unwarp.hpp"
 
 namespace reflectree {
 
-using namespace bent_pieces;
 using namespace rgl_places;
 
 namespace {
@@ -28,7 +27,7 @@ RgbT<AffineForm> either(const RgbT<AffineForm>& a, const RgbT<AffineForm>& b) {
 template <class Table, std::size_t known>
 class RglEnclosure final : public BrdfEnclosure {
  public:
-  explicit RglEnclosure(const Table& table) : slices_{table} {
+  explicit RglEnclosure(const Table& table) : slices_{table}, unwarped_(table) {
     if (reduces_channels()) norms_ = norms_of_nodes();
   }
 
@@ -54,15 +53,16 @@ class RglEnclosure final : public BrdfEnclosure {
  private:
   using Pieces = GridPieces<known + 2, 100>;
   using Node = typename Pieces::Node;
-  using Where = std::array<const Part*, known + 2>;
-  using Places = std::array<double, known + 2>;
   using KnownForms = std::array<AffineForm, known>;
 
   static AffineForm one_by_cosine(const ShadingGeometry<AffineForm>& g) {
     return AffineForm(1) / max(AffineForm(least_cosine), g.cos_theta_i);
   }
+  // At the rim, where the map keeps the cosine from 0, it is less than the least, and f cos theta_i a tenth.
   static AffineForm cosine_by_itself(const ShadingGeometry<AffineForm>& g) {
-    const double lo = g.cos_theta_i.range.lo / double(least_cosine);
+    const RealInterval c = g.cos_theta_i.range;
+    if (c.hi <= double(least_cosine)) return max(g.cos_theta_i, AffineForm(0.f)) / AffineForm(least_cosine);
+    const double lo = c.lo / double(least_cosine);
     return lo > 1 ? AffineForm(1) : AffineForm::anything_in({std::max(lo * (1 - 2 * u), 0.), 1});
   }
 
@@ -95,7 +95,7 @@ class RglEnclosure final : public BrdfEnclosure {
       const AffineForm sigma = interpolated(slices_.sigma(), of_theta_o, v_of_wo);
       const GridSize size = slices_.warp_size();
       const Vec2<AffineForm> place =
-          unwarped(wo, located(of_theta_h, size.width), located(of_phi_h, size.height));
+          unwarped_(wo, located(of_theta_h, size.width), located(of_phi_h, size.height));
       const AffineForm normals = max(interpolated(slices_.ndf(), of_theta_h, of_phi_h), AffineForm(0.f));
       return finish(wo, place, factor * (normals / (AffineForm(4.f) * sigma)));
     };
@@ -163,34 +163,6 @@ class RglEnclosure final : public BrdfEnclosure {
     return slices_.theta_o();
   }
   int slice(int theta, int phi) const { return phi * int(slices_.theta_o().size()) + theta; }
-  template <class Of>
-  double mixed(const Where& where, const Places& place, const Of& of) const {
-    const double t = where[0]->share(place[0]);
-    const auto at_phi = [&](int phi) {
-      const int s = slice(where[0]->cell, phi);
-      return (1 - t) * of(s) + t * of(s + 1);
-    };
-    if constexpr (known == 1) {
-      return at_phi(0);
-    } else {
-      const double p = where[1]->share(place[1]);
-      return (1 - p) * at_phi(where[1]->cell) + p * at_phi(where[1]->cell + 1);
-    }
-  }
-  // The first and the last node that values over a range touch.
-  std::pair<int, int> touched(std::size_t axis, const KnownForms& wo) const {
-    const std::vector<float>& all = nodes(axis);
-    const RealInterval range = wo[axis].range;
-    std::size_t first = 0, last = all.size() - 1;
-    while (first + 2 < all.size() && double(all[first + 1]) < range.lo) ++first;
-    while (last > first + 1 && double(all[last - 1]) > range.hi) --last;
-    return {int(first), int(last)};
-  }
-
-  // Where V^-1 leads, each in [0, 1]: from a place in cells of the warp.
-  Vec2<AffineForm> unwarped(const KnownForms& wo, const AffineForm& x, const AffineForm& y) const;
-  Vec2<AffineForm> unwarped_range(const KnownForms& wo, RealInterval x, RealInterval y) const;
-
   Pieces colours(const KnownForms& wo, const Vec2<AffineForm>& at) const {
     const GridSize size = slices_.colour_size();
     std::array<GridAxis, known + 2> axes;
@@ -241,120 +213,9 @@ class RglEnclosure final : public BrdfEnclosure {
   std::size_t stride() const { return std::size_t(slices_.colour(0, 0, 1) - slices_.colour(0, 0, 0)); }
 
   RglSlices<Table> slices_;
-  std::vector<float> norms_;  // of many channels, node by node
+  RglUnwarp<Table, known> unwarped_;  // V^-1
+  std::vector<float> norms_;          // of many channels, node by node
 };
-
-// Many cells, as where the azimuth of wh may be any. Between nodes of wo and of y the place along x is a quotient of two
-// means with the same weights, and so between the quotients at the nodes; all masses ascend.
-template <class Table, std::size_t known>
-Vec2<AffineForm> RglEnclosure<Table, known>::unwarped_range(const KnownForms& wo, RealInterval x,
-                                                            RealInterval y) const {
-  const GridSize size = slices_.warp_size();
-  const auto cell = [](double at, int cells) { return std::clamp(int(at), 0, cells - 1); };
-  const int first_y = cell(y.lo, size.height - 1), last_y = cell(y.hi, size.height - 1);
-  RealInterval sx{1, 0}, sy{1, 0};
-  const auto add = [&](int slice) {
-    const auto below = [&](double at) {
-      const int j = cell(at, size.height - 1);
-      const WarpLine row = slices_.row(slice, j);
-      const double b = at - j, m0 = row.mass, m1 = slices_.row(slice, j + 1).mass;
-      return row.cdf + b * (m0 + 0.5 * b * (m1 - m0));
-    };
-    sy = hull(sy, {below(y.lo), below(y.hi)});
-    for (int j = first_y; j <= last_y + 1; ++j) {
-      const double mass = slices_.row(slice, j).mass;
-      const auto along = [&](double at) {
-        const int i = cell(at, size.width - 1);
-        const WarpPoint node = slices_.warp(slice, j, i);
-        const double a = at - i, p0 = node.pdf, p1 = slices_.warp(slice, j, i + 1).pdf;
-        return node.cdf + a * (p0 + 0.5 * a * (p1 - p0));
-      };
-      // Where nothing is visible the row adds nothing to the means, and alone it leads to 0.
-      sx = hull(sx, mass > 0 ? RealInterval(along(x.lo) / mass, along(x.hi) / mass) : RealInterval(0, 0));
-    }
-  };
-  const auto [first, last] = touched(0, wo);
-  std::pair<int, int> rows{0, 0};
-  if constexpr (known == 2) rows = touched(1, wo);
-  for (int p = rows.first; p <= rows.second; ++p) {
-    for (int t = first; t <= last; ++t) add(slice(t, p));
-  }
-  constexpr double share = 64 * u;
-  const auto rounded = [](RealInterval r) {
-    return within(AffineForm::anything_in({r.lo * (1 - share), r.hi * (1 + share)}), 0, 2);
-  };
-  return {rounded(sx), rounded(sy)};
-}
-
-template <class Table, std::size_t known>
-Vec2<AffineForm> RglEnclosure<Table, known>::unwarped(const KnownForms& wo, const AffineForm& x,
-                                                      const AffineForm& y) const {
-  constexpr std::size_t n = known + 2;
-  const AffineForm any = AffineForm::anything_in({0, 1});
-  const GridSize size = slices_.warp_size();
-  const auto unit = [](int i) { return double(i); };
-  const Parts of_x(x.range, size.width, unit), of_y(y.range, size.height, unit);
-  const Parts of_theta(wo[0].range, int(nodes(0).size()),
-                       [&](int i) { return double(nodes(0)[std::size_t(i)]); });
-  const Parts of_phi(wo[known - 1].range, known == 2 ? int(nodes(1).size()) : 2, [&](int i) {
-    return known == 2 ? double(nodes(known - 1)[std::size_t(i)]) : double(i);
-  });
-  std::array<const Parts*, n> parts;
-  std::array<AffineForm, n> at;
-  parts[0] = &of_theta, parts[known - 1] = known == 2 ? &of_phi : &of_theta;
-  parts[known] = &of_x, parts[known + 1] = &of_y;
-  for (std::size_t a = 0; a < known; ++a) at[a] = wo[a];
-  at[known] = x, at[known + 1] = y;
-  std::size_t count = 1;
-  bool few = true;
-  for (const Parts* p : parts) few = few && p->are_few(), count *= p->size();
-  if (!few || count > Parts::most * Parts::most * Parts::most) {
-    // Where wh may be the normal its azimuth may stay unknown however small the box is. Elsewhere halving helps, and
-    // a range without slopes would mislead the choice of the axis.
-    if (x.range.lo < 1) return unwarped_range(wo, x.range, y.range);
-    return {any, any};
-  }
-  constexpr double share = 32 * u;
-  // Along a row up to x, on both rows of the cell.
-  const auto along = [&](const Where& where, const Places& place) {
-    const Part &px = *where[known], &py = *where[known + 1];
-    const double a = px.share(place[known]), b = py.share(place[known + 1]);
-    Bent sum{0, 0, px.hi - px.lo};
-    for (const int upper : {0, 1}) {
-      const auto node = [&](int s, int right) { return slices_.warp(s, py.cell + upper, px.cell + right); };
-      const double cdf = mixed(where, place, [&](int s) { return node(s, 0).cdf; });
-      const double p0 = mixed(where, place, [&](int s) { return node(s, 0).pdf; });
-      const double p1 = mixed(where, place, [&](int s) { return node(s, 1).pdf; });
-      const double w = upper ? b : 1 - b;
-      sum.value += w * (cdf + a * (p0 + 0.5 * a * (p1 - p0)));
-      sum.bend += w * (p1 - p0);
-    }
-    return sum;
-  };
-  const auto mass_of = [&](const Where& where, const Places& place, int upper) {
-    return mixed(where, place, [&](int s) { return slices_.row(s, where[known + 1]->cell + upper).mass; });
-  };
-  const auto mass = [&](const Where& where, const Places& place) {
-    const double b = where[known + 1]->share(place[known + 1]);
-    return Bent{(1 - b) * mass_of(where, place, 0) + b * mass_of(where, place, 1), 0, 0};
-  };
-  const auto below = [&](const Where& where, const Places& place) {
-    const Part& py = *where[known + 1];
-    const double b = py.share(place[known + 1]);
-    const double m0 = mass_of(where, place, 0), m1 = mass_of(where, place, 1);
-    const double cdf = mixed(where, place, [&](int s) { return slices_.row(s, py.cell).cdf; });
-    return Bent{cdf + b * (m0 + 0.5 * b * (m1 - m0)), m1 - m0, py.hi - py.lo};
-  };
-  // Where x does not enter one part of it stands for all.
-  const Parts one(RealInterval(0, 0), 2, unit);
-  std::array<const Parts*, n> flat = parts;
-  std::array<AffineForm, n> flat_at = at;
-  flat[known] = &one, flat_at[known] = AffineForm(0);
-  const AffineForm sy = enclosed(flat, flat_at, below, share);
-  const AffineForm m = enclosed(flat, flat_at, mass, share);
-  if (!(m.range.lo > 0)) return {unwarped_range(wo, x.range, y.range).x, within(sy, 0, 2)};
-  return {enclosed(parts, at, along, share) / m, sy};
-}
 
 }  // namespace
 

@@ -30,8 +30,8 @@ inline AffineForm relative_azimuth(const ShadingGeometry<AffineForm>& g) {
   if (const HalfAzimuth* known = known_azimuth(g)) return known->angle;
   AffineForm y = g.wh.y, x = g.wh.x;
   if (!plane) y = g.wo.x * g.wh.y - g.wo.y * g.wh.x, x = g.wo.x * g.wh.x + g.wo.y * g.wh.y;
-  if (plane && g.wi.y.range.lo >= 0) return angle_above(within(y, 0, 2), x);
-  if (plane && g.wi.y.range.hi <= 0) return -angle_above(within(-y, 0, 2), x);
+  if (plane && g.wi.y.range.lo >= 0) return between_azimuths(angle_above(within(y, 0, 2), x), g);
+  if (plane && g.wi.y.range.hi <= 0) return between_azimuths(-angle_above(within(-y, 0, 2), x), g);
   if (x.range.lo > 0) return atan2(y, x);
   return AffineForm::anything_in({-pi_v<double>, pi_v<double>});
 }

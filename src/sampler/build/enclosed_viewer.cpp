@@ -80,7 +80,7 @@ ViewerForms EnclosedViewer::over(const std::array<AffineForm, 2 + max_parameters
   ViewerForms v;
   const AffineForm c =
       clipped(widened(cos(unknown[0]), length_tolerance), {double(known.lo), double(known.hi)});
-  const AffineForm s = widened(sin(unknown[0]), length_tolerance);
+  const AffineForm s = clipped(widened(sin(unknown[0]), length_tolerance), {0, 2});
   v.wo = v.framed = {s, AffineForm(0), c}, v.sine = s;
   std::size_t next = 1, slot = 0;
   AffineForm phi_o;
@@ -200,7 +200,7 @@ ShadingGeometry<AffineForm> EnclosedViewer::for_caller(const ShadingGeometry<Aff
     return from_axis(w);
   };
   ShadingGeometry<AffineForm> out = g;
-  out.back = std::nullopt, out.viewer = known_of(g, v, image);
+  out.back = std::nullopt, out.azimuth_i = std::nullopt, out.viewer = known_of(g, v, image);
   out.slopes = slopes_from_axis(g.slopes);
   out.wo = imaged(v.framed);
   if (viewer_.sin_axis != 0) {  // it is the framed one that rounds
