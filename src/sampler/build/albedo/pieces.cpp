@@ -94,7 +94,8 @@ AlbedoTable albedo_in_pieces(float span, const std::vector<double>& borders, boo
   std::vector<AlbedoTable> rows;
   double missed = 0;
   for (const Piece& piece : done) {
-    const float lo = span * float(piece.lo), hi = span * float(piece.hi);
+    // To the last bit where f tells that it leaps.
+    const auto lo = float(double(span) * piece.lo), hi = float(double(span) * piece.hi);
     for (std::size_t k = 0; k < 5; k += std::size_t(piece.step)) {
       rows.push_back(piece.rows[k]);
       table.phi_o.push_back(k == 4 ? hi : lo + (hi - lo) * (float(k) / 4));
