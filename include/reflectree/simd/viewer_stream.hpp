@@ -12,11 +12,12 @@
 namespace reflectree::detail {
 
 // Four lines through the places around a viewer's azimuth, weighed.
-REFLECTREE_INLINE Lanes albedo_at(const PackedAlbedo& albedo, Lanes cos_theta_o, Lanes phi_o) {
-  float c[lane_count], phi[lane_count], t[lane_count], base[4][lane_count], slope[4][lane_count];
-  cos_theta_o.store(c), phi_o.store(phi);
+REFLECTREE_INLINE Lanes albedo_at(const PackedAlbedo& albedo, Lanes cos_theta_o, Lanes phi_o, Lanes azimuth) {
+  float c[lane_count], phi[lane_count], key[lane_count], t[lane_count], base[4][lane_count],
+      slope[4][lane_count];
+  cos_theta_o.store(c), phi_o.store(phi), azimuth.store(key);
   for (std::size_t i = 0; i < lane_count; ++i) {
-    const PackedAlbedo::Row row = albedo.row_at(phi[i]);
+    const PackedAlbedo::Row row = albedo.row_at(albedo.on_side(phi[i], key[i]));
     const AlbedoPiece* piece = albedo.pieces_at(c[i]) + row.index;
     t[i] = row.t;
     for (std::size_t k = 0; k < 4; ++k) base[k][i] = piece[k].base, slope[k][i] = piece[k].slope;
@@ -75,7 +76,7 @@ class ViewerStream {
     Lanes albedo(1);
     if (needs_albedo_) {
       const Lanes phi_o = azimuth_of(viewer_.frame.symmetry, folded.x, folded.y);
-      albedo = albedo_at(viewer_.albedo, cos_theta, phi_o);
+      albedo = albedo_at(viewer_.albedo, cos_theta, phi_o, f.azimuth);
     }
     select(valid, albedo, Lanes(0)).store(albedo_ + k);
   }

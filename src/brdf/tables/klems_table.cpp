@@ -1,31 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reflectree/brdf/tables/klems_table.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include "reflectree/brdf/enclosure.hpp"
+#include "reflectree/math/azimuth_key.hpp"
 #include "reflectree/math/fast_functions.hpp"
 
 namespace reflectree {
 
+namespace {
+
+constexpr KlemsView views[] = {KlemsView::as_is, KlemsView::half_turn, KlemsView::mirrored_x,
+                               KlemsView::mirrored_y};
+
+// Where patch k of n begins in a view, in turns of 1 / 2n, in [0, 2n).
+int begin_of(int k, int n, KlemsView view) {
+  const int lower = 2 * k - 1, upper = 2 * k + 1;
+  switch (view) {
+    case KlemsView::half_turn:
+      return (lower + n + 2 * n) % (2 * n);
+    case KlemsView::mirrored_x:
+      return (n - upper + 2 * n) % (2 * n);
+    case KlemsView::mirrored_y:
+      return (2 * n - upper + 2 * n) % (2 * n);
+    default:
+      return (lower + 2 * n) % (2 * n);
+  }
+}
+// Radians. In lowest terms: rings of different n that have a border in common have one float.
+float radians(int turns, int n) {
+  const int common = std::gcd(turns, 2 * n);
+  return float(2 * pi_v<double> * (turns / common) / (2 * n / common));
+}
+
+}  // namespace
+
 KlemsBasis::KlemsBasis(const std::vector<double>& theta, const std::vector<int>& patches)
     : patches_(patches) {
   assert(theta.size() == patches.size() + 1);
-  for (const double t : theta) theta_.push_back(float(t)), cos_theta_.push_back(float(cos(t)));
+  for (const double t : theta) theta_.push_back(float(t)), cos_theta_.push_back(std::cos(float(t)));
   cos_theta_.front() = 2;  // z may exceed 1 by a rounding
   if (theta.back() > 1.5707) cos_theta_.back() = 0;
   for (const int n : patches) first_.push_back(size_), size_ += n;
+  for (const KlemsView view : views) {
+    std::vector<Circle>& circles = circles_.emplace_back();
+    for (std::size_t ring = 0; ring < patches.size(); ++ring) {
+      const int n = patches[ring];
+      std::vector<std::pair<int, int>> begins;
+      for (int k = 0; k < n; ++k) begins.emplace_back(n > 1 ? begin_of(k, n, view) : 0, first_[ring] + k);
+      std::sort(begins.begin(), begins.end());
+      Circle& circle = circles.emplace_back();
+      for (const auto& [begin, patch] : begins)
+        circle.key.push_back(azimuth_key(radians(begin, n))), circle.patch.push_back(patch);
+    }
+  }
 }
 
-int KlemsBasis::patch_of(Direction w) const {
+int KlemsBasis::patch_of(Direction w, KlemsView view) const {
   std::size_t ring = 0;
   while (ring + 1 < cos_theta_.size() && w.z <= cos_theta_[ring + 1]) ++ring;
   if (ring == patches_.size()) return -1;
-  const int n = patches_[ring];
-  const float turns = angle_of(w.y, w.x) * (0.5f / pi);
-  const int k = int(std::floor(max(-float(n), turns * float(n) + 0.5f)));  // in this order a NaN becomes -n
-  return first_[ring] + (k < 0 ? k + n : k >= n ? k - n : k);
+  const Circle& circle = circles_[std::size_t(view)][ring];
+  const std::size_t last = circle.key.size() - 1;
+  const float key = azimuth_key(w.x, w.y);
+  // Keys are almost equidistant. A NaN finds the last patch.
+  auto k = std::size_t(max(0.f, min(0.25f * key * float(last + 1), float(last))));
+  while (k > 0 && !(key >= circle.key[k])) --k;
+  while (k < last && key >= circle.key[k + 1]) ++k;
+  return circle.patch[key >= circle.key[k] ? k : last];
 }
 
 KlemsBasis::Touched KlemsBasis::patches_of(const Vec3<AffineForm>& w) const {
@@ -50,10 +96,11 @@ KlemsBasis::Touched KlemsBasis::patches_of(const Vec3<AffineForm>& w) const {
   return out;
 }
 
-std::vector<float> KlemsBasis::azimuth_borders(std::size_t ring) const {
+std::vector<float> KlemsBasis::azimuth_borders(std::size_t ring, KlemsView view) const {
   std::vector<float> borders;
   const int n = patches_[ring];
-  for (int k = 0; n > 1 && k < n; ++k) borders.push_back(2 * pi * (float(k) + 0.5f) / float(n));
+  for (int k = 0; n > 1 && k < n; ++k) borders.push_back(radians(begin_of(k, n, view), n));
+  std::sort(borders.begin(), borders.end());
   return borders;
 }
 
@@ -71,9 +118,8 @@ double KlemsBasis::projected_solid_angle(int patch) const {
 }
 
 float KlemsTable::operator()(const ShadingGeometry<float>& g) const {
-  const float side = seen_through ? -1.f : 1.f;
-  const int in = incident.patch_of({-side * g.wo.x, -g.wo.y, g.wo.z});
-  const int out = exiting.patch_of({side * g.wi.x, g.wi.y, g.wi.z});
+  const int in = incident.patch_of(g.wo, incident_view());
+  const int out = exiting.patch_of(g.wi, exiting_view());
   if (in < 0 || out < 0) return 0;
   return value(in, out);
 }
@@ -125,15 +171,11 @@ BrdfTraits KlemsTable::traits() const {
   const std::vector<float>& borders = incident.ring_borders();
   for (std::size_t i = 1; i < borders.size(); ++i) {
     if (i + 1 < borders.size() || borders[i] < 1.57f) traits.theta_o_knots.push_back(borders[i]);
-    AzimuthKnots band{borders[i], incident.azimuth_borders(i - 1)};
-    for (float& phi : band.phi_o) phi = seen_through ? 2 * pi - phi : phi + pi;
-    traits.phi_o_knots.push_back(std::move(band));
+    traits.phi_o_knots.push_back({borders[i], incident.azimuth_borders(i - 1, incident_view())});
   }
   const std::vector<float>& ends = exiting.ring_borders();
   for (std::size_t i = 1; i < ends.size(); ++i) {
-    PatchBand band{ends[i], exiting.azimuth_borders(i - 1)};
-    for (float& phi : band.phi_i) phi = seen_through ? pi - phi : phi;
-    traits.patches.push_back(std::move(band));
+    traits.patches.push_back({ends[i], exiting.azimuth_borders(i - 1, exiting_view())});
   }
   if (ends.back() < 0.5f * pi) traits.patches.push_back({0.5f * pi, {}});
   // Sums over the exiting patches, of every incident one.
@@ -143,9 +185,8 @@ BrdfTraits KlemsTable::traits() const {
     for (int out = 0; out < exiting.size(); ++out)
       albedo.back() += exiting.projected_solid_angle(out) * double(value(in, out));
   }
-  const float side = seen_through ? -1.f : 1.f;
-  traits.albedo = [basis = incident, albedo, side](Direction wo) {
-    const int in = basis.patch_of({-side * wo.x, -wo.y, wo.z});
+  traits.albedo = [basis = incident, albedo, view = incident_view()](Direction wo) {
+    const int in = basis.patch_of(wo, view);
     return in < 0 ? 0. : albedo[std::size_t(in)];
   };
   return traits;

@@ -87,6 +87,7 @@ struct ThetaJump {
 struct Jumps {
   std::vector<ThetaJump> theta_o;  // ascending
   std::vector<float> phi_o;        // radians, in the viewer's frame, ascending: found and told of
+  std::vector<float> phi_o_bends;  // those of them that f tells of and at which it is steady
 };
 
 float albedo_of(const Field& field, const AlbedoTable& table, const Viewer& viewer);

@@ -179,6 +179,19 @@ void add_leaps_at_knots(const Field& field, const Axis& axis, const Host& host, 
   std::sort(jumps.begin(), jumps.end(), [](const ThetaJump& a, const ThetaJump& b) { return a.at < b.at; });
 }
 
+// Azimuths that f tells of and at which it bends without a leap.
+std::vector<float> find_bends(const Field& field, const Axis& axis, const Host& host, Effort& effort) {
+  constexpr double near = 2e-6, least = 3e-4;
+  const std::vector<FixedPoint> p = fixed_points(field, axis, 1);
+  std::vector<float> bends;
+  for (const float phi : told_azimuths(field)) {
+    const std::vector<Values> v =
+        values_at(field, axis, p, {double(phi) - near, double(phi) + near}, host, effort);
+    if (change(v[0], v[1]).relative <= least) bends.push_back(phi);
+  }
+  return bends;
+}
+
 }  // namespace
 
 Jumps find_jumps(const Field& field, const Host& host, Effort& effort) {
@@ -197,6 +210,7 @@ Jumps find_jumps(const Field& field, const Host& host, Effort& effort) {
     jumps.phi_o.push_back(float(0.5 * (b.lo + b.hi)));
   for (const float phi : told_azimuths(field)) jumps.phi_o.push_back(phi);
   std::sort(jumps.phi_o.begin(), jumps.phi_o.end());
+  jumps.phi_o_bends = find_bends(field, phi_o, host, effort);
   return jumps;
 }
 

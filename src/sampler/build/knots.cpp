@@ -19,6 +19,15 @@ std::vector<float> borders_of(std::vector<float> knots, float end) {
   return borders;
 }
 
+// Where f tells of a step that was found within a rounding, it knows the place better.
+float told_at(float theta, const BrdfTraits& traits) {
+  constexpr float rounding = 3e-7f;
+  for (const float knot : traits.theta_o_knots) {
+    if (abs(knot - theta) <= rounding) return knot;
+  }
+  return theta;
+}
+
 // An azimuth of f's frame, as the viewer's frame knows it.
 float folded(float phi, const ViewerFrame& frame) {
   const float turn = 2 * pi, span = azimuth_span(frame.symmetry);
@@ -35,7 +44,7 @@ std::vector<float> theta_borders(const Field& field, const Jumps* jumps) {
   std::vector<float> knots;
   // What was found stands first: a knot beside it is the same one.
   if (jumps) {
-    for (const ThetaJump& jump : jumps->theta_o) knots.push_back(jump.at);
+    for (const ThetaJump& jump : jumps->theta_o) knots.push_back(told_at(jump.at, traits));
   }
   constexpr float same = 1e-4f;
   const auto add = [&](float theta) {

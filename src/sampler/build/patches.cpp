@@ -35,6 +35,20 @@ float share_of(const Box& box, const PatchCell& patch) {
   return x > rounding && y > rounding ? x * y / (box.width * box.height) : 0;
 }
 
+// Whether places of a box may round into a patch: borders of leaves and of patches have places in common, where
+// the map of the square decides by its last bits. At both ends of x the sides of y meet, and all azimuths at y = 0.
+bool meets(const Box& box, const PatchCell& patch) {
+  const auto meet = [](float a0, float a1, float b0, float b1) {
+    return min(a1, b1) - max(a0, b0) > -rounding;
+  };
+  const float x1 = box.x0 + box.width, y1 = box.y0 + box.height;
+  if (meet(patch.y0, patch.y1, box.y0, y1) && meet(patch.x0, patch.x1, box.x0, x1)) return true;
+  if (meet(patch.y0, patch.y1, 0, 0) && meet(box.y0, y1, 0, 0)) return true;
+  const bool ends = (meet(patch.x0, patch.x1, 1, 1) && meet(box.x0, x1, 1, 1)) ||
+                    (meet(patch.x0, patch.x1, -1, -1) && meet(box.x0, x1, -1, -1));
+  return ends && meet(patch.y0, patch.y1, -y1, -box.y0);
+}
+
 // The patches that a leaf touches, and what they hold.
 struct Touched {
   PatchCell cell;
@@ -46,7 +60,7 @@ std::vector<Touched> touched_by(const Box& box, const Slab& slab, const Field& f
   const std::size_t views = slab.views.size();
   for (std::size_t i = 0; i < field.patches.size(); ++i) {
     const PatchCell& c = field.patches[i];
-    if (share_of(box, c) > 0) all.push_back({c, slab.patches.seen[i], &slab.patches.values[i * views]});
+    if (meets(box, c)) all.push_back({c, slab.patches.seen[i], &slab.patches.values[i * views]});
   }
   return all;
 }
@@ -72,7 +86,8 @@ class Prices {
     float largest = 0, square = 0;
     for (const Touched& patch : touched_) {
       const float share = share_of(box, patch.cell);
-      if (share > 0) largest = max(largest, patch.seen.largest), square += share * patch.seen.square;
+      if (meets(box, patch.cell)) largest = max(largest, patch.seen.largest);
+      square += share * patch.seen.square;
     }
     return area_share(cell) * (bounds_ ? largest : sqrt(square));
   }

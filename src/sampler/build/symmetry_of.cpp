@@ -128,6 +128,9 @@ bool is_anisotropic(const AnyBrdf& f, const Values& values, const std::vector<Di
 
 ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<Direction>& wo,
                      const std::vector<Direction>& wi, float lobe_axis, std::uint64_t seed) {
+  // Tables made of patches stay in their own frame, where their borders are those of slabs to the last bit: folded
+  // or turned ones would round.
+  if (!f.traits().patches.empty()) return {ViewerSymmetry::none, 0};
   const auto holds = [&](const auto& image) { return !change_under(f, values, wo, wi, seed, image); };
   const auto mirrors = [&](float axis) {
     const float c = cos(2 * axis), s = sin(2 * axis);
@@ -147,7 +150,7 @@ ViewerFrame frame_of(const AnyBrdf& f, const Values& values, const std::vector<D
   }
   const float refined = nearest_plane(f, values, wo, wi, lobe_axis);
   if (mirrors(refined)) return {half_turn ? ViewerSymmetry::two_planes : ViewerSymmetry::one_plane, refined};
-  // Tables made of patches stay in their own frame, in whose cells borders lie well.
+  // Tables stay in their own frame, in whose cells borders lie well.
   const float axis = f.traits().phi_o_knots.empty() ? lobe_axis : 0.f;
   return {half_turn ? ViewerSymmetry::half_turn : ViewerSymmetry::none, axis};
 }

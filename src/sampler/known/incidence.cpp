@@ -20,6 +20,7 @@ void find_albedo(const PackedViewer& viewer, Incidence& in) {
     }
     // In lanes, which choose by masks where floats would branch; the bits are the same.
     in.phi_o = azimuth_of(viewer.frame.symmetry, Lanes(x), Lanes(y))[0];
+    in.phi_o = viewer.albedo.on_side(in.phi_o, in.azimuth);
   }
   in.albedo = viewer.family.count == 0 ? viewer.albedo.at(in.wo.z, in.phi_o)
                                        : viewer.albedo.at(in.wo.z, in.phi_o, in.coordinates);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "albedo_axes.hpp"
+#include "reflectree/math/azimuth_key.hpp"
 #include "reflectree/sampler/known/albedo.hpp"
 
 namespace reflectree {
@@ -130,6 +131,13 @@ const PackedAlbedo::Segment& PackedAlbedo::segment_at(float phi_o) const {
   return *(after - 1);
 }
 
+float PackedAlbedo::between_borders(float phi_o, float key) const {
+  const auto next = std::upper_bound(keys.begin() + 1, keys.end(), key) - keys.begin();
+  const auto k = std::size_t(next - 1);
+  phi_o = max(phi_o, segments[k].phi_o);
+  return k + 1 < segments.size() ? min(phi_o, std::nextafter(segments[k + 1].phi_o, 0.f)) : phi_o;
+}
+
 PackedAlbedo pack(const AlbedoTable& table) {
   const std::size_t columns = table.cos_theta_o.size();
   PackedAlbedo packed{CosineLookup(table.cos_theta_o), {}, columns - 1, {}};
@@ -138,6 +146,7 @@ PackedAlbedo pack(const AlbedoTable& table) {
     const float begin = table.phi_o[segment.first], end = table.phi_o[segment.first + segment.rows - 1];
     packed.segments.push_back({begin, float(segment.rows - 1) / (end - begin), std::uint32_t(rows),
                                std::uint32_t(segment.rows - 2)});
+    packed.keys.push_back(azimuth_key(begin));
     rows += segment.rows + 2;
   }
   const std::vector<float> values = padded(table);

@@ -34,11 +34,4 @@ float azimuth_span(ViewerSymmetry symmetry) {
   return 2 * pi;
 }
 
-float azimuth_key(float phi_o) {
-  if (phi_o >= 2 * pi) return 4;
-  const double x = std::cos(double(phi_o)), y = std::sin(double(phi_o));
-  const double q = std::abs(y) / (std::abs(x) + std::abs(y)), upper = x < 0 ? 2 - q : q;
-  return float(y < 0 ? 4 - upper : upper);
-}
-
 }  // namespace reflectree

@@ -11,6 +11,9 @@
 
 namespace reflectree {
 
+// How directions stand to those of a basis.
+enum class KlemsView { as_is, half_turn, mirrored_x, mirrored_y };
+
 // Rings about the normal, cut into equal patches. Patch 0 of a ring is centred at azimuth 0; patches count
 // counter-clockwise, rings from the normal outwards.
 class KlemsBasis {
@@ -20,8 +23,10 @@ class KlemsBasis {
   KlemsBasis(const std::vector<double>& theta, const std::vector<int>& patches);
 
   int size() const { return size_; }
-  // The patch of a direction with z > 0, -1 beyond the last ring.
-  int patch_of(Direction w) const;
+  // The patch of a direction with z > 0, -1 beyond the last ring. Whoever compares its azimuth_key with those of
+  // azimuth_borders(), upper borders belonging to what is above, and its cosine with cos() of ring_borders(),
+  // belonging to what is outside, finds the same patch: samplers do (slab_tree.hpp).
+  int patch_of(Direction w, KlemsView view = KlemsView::as_is) const;
   // Of all directions of a box: patches that they may lie in, and whether some may lie beyond the last ring.
   struct Touched {
     std::vector<int> patches;
@@ -32,14 +37,20 @@ class KlemsBasis {
   int first_of_ring(int patch) const;
   // In radians.
   const std::vector<float>& ring_borders() const { return theta_; }
-  // Where patches of a ring meet, radians in [0, 2 pi); none where the ring is one patch.
-  std::vector<float> azimuth_borders(std::size_t ring) const;
+  // Where patches of a ring meet, radians in [0, 2 pi), ascending; none where the ring is one patch.
+  std::vector<float> azimuth_borders(std::size_t ring, KlemsView view = KlemsView::as_is) const;
   // The measure of a patch: its projected solid angle.
   double projected_solid_angle(int patch) const;
 
  private:
+  // The patches of a ring by the azimuth_key at which each begins, ascending; one may begin at 0.
+  struct Circle {
+    std::vector<float> key;
+    std::vector<int> patch;
+  };
   std::size_t ring_of(int patch) const;
-  std::vector<float> theta_, cos_theta_;  // one more than rings
+  std::vector<float> theta_, cos_theta_;      // one more than rings
+  std::vector<std::vector<Circle>> circles_;  // [view][ring]
   std::vector<int> patches_, first_;
   int size_ = 0;
 };
@@ -56,6 +67,8 @@ struct KlemsTable {
   float value(int in, int out) const {
     return values[std::size_t(in) * std::size_t(exiting.size()) + std::size_t(out)];
   }
+  KlemsView incident_view() const { return seen_through ? KlemsView::mirrored_y : KlemsView::half_turn; }
+  KlemsView exiting_view() const { return seen_through ? KlemsView::mirrored_x : KlemsView::as_is; }
   // Whether values are the same in all patches of a ring.
   bool knows_rings_alone() const;
   float operator()(const ShadingGeometry<float>& g) const;

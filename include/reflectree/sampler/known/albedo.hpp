@@ -82,6 +82,7 @@ struct PackedAlbedo {
   std::vector<AlbedoPiece> pieces;
   std::size_t row = 0;            // pieces of one cos_theta_o
   std::vector<Segment> segments;  // empty for isotropic functions
+  std::vector<float> keys = {};   // of the azimuths where they begin
   std::vector<Axis> parameters = {};
   // Of one coordinate beyond theta_o: known to be 0 nowhere, so that who does not need it need not ask.
   bool positive = false;
@@ -109,6 +110,12 @@ struct PackedAlbedo {
   // All rows of one cos_theta_o.
   const AlbedoPiece* pieces_at(float cos_theta_o) const { return pieces.data() + row * lookup(cos_theta_o); }
   const Segment& segment_at(float phi_o) const;
+  // phi_o on the side of the segments' borders on which its azimuth_key stands: by keys slabs are found, too, and
+  // functions with a step at a border may ask it.
+  float on_side(float phi_o, float key) const {
+    return keys.size() > 1 ? between_borders(phi_o, key) : phi_o;
+  }
+  float between_borders(float phi_o, float key) const;
   // Of families.
   float at(float cos_theta_o, float phi_o, const Coordinates& at) const {
     const AlbedoPiece* column = pieces_at(cos_theta_o);
@@ -135,7 +142,8 @@ struct PackedAlbedo {
   }
   float over_rows(const AlbedoPiece* column, float cos_theta_o, float phi_o, const Coordinates& at) const;
   std::size_t bytes() const {
-    return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece) + segments.size() * sizeof(Segment);
+    return lookup.bytes() + pieces.size() * sizeof(AlbedoPiece) + segments.size() * sizeof(Segment) +
+           keys.size() * sizeof(float);
   }
 };
 PackedAlbedo pack(const AlbedoTable& table);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "reflectree/math/azimuth_key.hpp"
 #include "reflectree/math/direction.hpp"
 
 namespace reflectree {
@@ -66,17 +67,12 @@ REFLECTREE_INLINE FoldedViewer<T> fold_viewer(ViewerSymmetry symmetry, T x, T y,
   return {u, v, flip_sign(cosine, half_turn), flip_sign(sine, half_turn), side};
 }
 
-// What ascends with the azimuth and takes no arctangent: from 0 to 4 around, equal steps along the square
-// |x| + |y| = 1.
+// By what slabs are found: the azimuth_key of a folded viewer.
 template <class T>
 REFLECTREE_INLINE T azimuth_key(ViewerSymmetry symmetry, T x, T y) {
-  const T a = abs(x), b = abs(y), q = b / max(a + b, T(1e-37f));
-  if (symmetry == ViewerSymmetry::two_planes) return q;
-  x = x + T(0), y = y + T(0);  // -0 is 0
-  const T upper = by_sign(x, q, T(2) - q);
-  return by_sign(y, upper, T(4) - upper);
+  if (symmetry != ViewerSymmetry::two_planes) return azimuth_key(x, y);
+  const T a = abs(x), b = abs(y);
+  return b / max(a + b, T(1e-37f));
 }
-// Of an azimuth in [0, 2 pi], radians; up to 4.
-float azimuth_key(float phi_o);
 
 }  // namespace reflectree

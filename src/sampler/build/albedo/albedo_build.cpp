@@ -67,8 +67,8 @@ AlbedoTable build_family_albedo(const Field& field, float relative_error, const 
                                    checked && with_checks);
     };
     const auto not_asked = [](const AlbedoTable&) { return 0.; };
-    return albedo_over_azimuth(field.frame.symmetry, borders, leaps_at_ends(field), error, row_at, not_asked,
-                               spent);
+    return albedo_over_azimuth(field.frame.symmetry, borders, jumps.phi_o_bends, leaps_at_ends(field), error,
+                               row_at, not_asked, spent);
   };
   const std::vector<KnownParameter>& parameters = field.parameters;
   const auto over_first = [&](float second, float error, bool with_checks) {
@@ -106,7 +106,10 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& 
   }
   const std::uint64_t start = effort.evaluations;
   const std::vector<float> borders = azimuth_borders(field, &jumps, 0, theta_max);
-  const std::uint64_t each = budget / std::max<std::uint64_t>(8, 5 * (borders.size() - 1));
+  // Of few pieces rows may be many; of many each has four, and one end in common with the next.
+  const std::uint64_t pieces = borders.size() - 1;
+  const std::uint64_t each =
+      pieces < 4 ? budget / std::max<std::uint64_t>(8, 5 * pieces) : effort.limit / 2 / (4 * pieces);
   // What the first row cannot reach, the others do not try for.
   const float asked = 0.35f * relative_error;
   float reachable = 0;
@@ -123,8 +126,8 @@ AlbedoTable build_albedo(const Field& field, float relative_error, const Jumps& 
   };
   // Rows that do not foretell each other are worth more than that: without them exact mode is off everywhere.
   const auto spent = [&] { return effort.evaluations - start > effort.limit / 2; };
-  return albedo_over_azimuth(field.frame.symmetry, borders, leaps_at_ends(field), relative_error, row_at,
-                             miss_of, spent);
+  return albedo_over_azimuth(field.frame.symmetry, borders, jumps.phi_o_bends, leaps_at_ends(field),
+                             relative_error, row_at, miss_of, spent);
 }
 
 }  // namespace reflectree::detail

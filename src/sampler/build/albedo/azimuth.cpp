@@ -10,8 +10,8 @@
 namespace reflectree::detail {
 
 AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, const std::vector<float>& borders,
-                                bool leaps_at_ends, float relative_error, const RowAt& row_at,
-                                const std::function<double(const AlbedoTable&)>& miss_of,
+                                const std::vector<float>& bends, bool leaps_at_ends, float relative_error,
+                                const RowAt& row_at, const std::function<double(const AlbedoTable&)>& miss_of,
                                 const std::function<bool()>& spent) {
   constexpr std::size_t most_rows = 33, most_pieces = 256;
   const auto error = double(relative_error);
@@ -44,8 +44,17 @@ AlbedoTable albedo_over_azimuth(ViewerSymmetry symmetry, const std::vector<float
   } else {
     cuts = {0, 0.5, 1};  // a single piece would go round
   }
+  const auto is_steady = [&](double cut) {
+    return std::any_of(bends.begin(), bends.end(),
+                       [&](float bend) { return std::abs(double(bend) - cut * double(span)) < 1e-4; });
+  };
   for (;;) {
-    AlbedoTable table = albedo_in_pieces(span, cuts, leaps, leaps_at_ends, error, once, spent);
+    std::vector<bool> leaping;
+    for (const double cut : cuts) {
+      const bool end = cut == 0 || cut == 1;
+      leaping.push_back((end ? leaps_at_ends : leaps) && !is_steady(cut));
+    }
+    AlbedoTable table = albedo_in_pieces(span, cuts, leaping, error, once, spent);
     table.even = is_mirrored(symmetry);
     const double miss = miss_of(table);
     if (miss <= double(table.relative_error) || leaps || spent() || cuts.size() > most_pieces)

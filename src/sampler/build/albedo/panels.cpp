@@ -63,7 +63,9 @@ std::vector<double> first_borders(const BrdfTraits& traits) {
   // middle node, and the parabola shows what it weighs.
   constexpr std::size_t steps = 12;
   const std::vector<float>& kinks = traits.theta_d_knots;
-  const bool dense = kinks.size() >= 2 * steps;  // then their panels are narrower than the steps
+  // Then panels are narrower than the steps. Of anisotropic functions integrals are dear.
+  const bool dense =
+      kinks.size() >= 2 * steps || (!traits.isotropic && traits.theta_o_knots.size() >= steps);
   std::vector<double> borders;
   for (std::size_t i = 0; i < (dense ? 1 : steps); ++i)
     borders.push_back(double(i) * 7.5 * pi_v<double> / 180);
