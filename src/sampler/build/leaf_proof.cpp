@@ -182,6 +182,16 @@ class Proof {
     out[0].box.hi[axis] = out[1].box.lo[axis] = 0.5 * (b.box.lo[axis] + b.box.hi[axis]);
     return out;
   }
+  // What the whole box says holds for its halves, of which forms may say less.
+  static void inherit(EnclosedPoint& half, const EnclosedPoint& whole) {
+    const auto narrow = [](AffineForm& x, const AffineForm& by) {
+      const RealInterval both = intersection(x.range, by.range);
+      if (both.lo <= both.hi) x.range = both;
+    };
+    if (!(half.unit.range.hi > 0)) return;  // there is nothing in it
+    narrow(half.target, whole.target);
+    if (half.mirrored && whole.mirrored) narrow(*half.mirrored, *whole.mirrored);
+  }
   static bool may_halve(const OpenBox& b, std::size_t axis) {
     return b.box.hi[axis] - b.box.lo[axis] >= smallest_width[axis];
   }
@@ -255,6 +265,7 @@ class Proof {
     Tried out{cut(b, axis)};
     for (const std::size_t i : {std::size_t(upper_first), std::size_t(!upper_first)}) {
       enclose(out.halves[i]);
+      inherit(out.halves[i].point, b.point);
       out.left += left_of(out.halves[i].point);
       if (i == std::size_t(upper_first) && out.left >= enough && enough < infinity) {
         out.left *= 2;
@@ -295,14 +306,17 @@ class Proof {
       for (OpenBox& half : chosen.halves) half.age = 0;
     } else {
       const auto left = [this](const EnclosedPoint& p) { return std::max(upper(p, proved_bound()), 0.); };
-      if (b.age > 0 && b.age <= trusted) {
+      const double here = upper(b.point, proved_bound());
+      // What an axis must gain, of what is left to prove. Where none does, the longest side is halved: slices that
+      // are ever thinner along one axis may never gain what the others would.
+      constexpr double worth = 0.02;
+      if (b.age > 0 && b.age <= trusted && (here == infinity || b.gain[axis] > worth * here)) {
         chosen = try_halves(b, axis, rise[axis] > 0, left, infinity);
         for (OpenBox& half : chosen.halves) half.gain[axis] *= 0.25, ++half.age;
       } else {
         constexpr double thinnest = 1. / 32;
         const Sides side = sides(b);
         const std::size_t longest = longest_axis(b, side);
-        const double here = upper(b.point, proved_bound());
         std::array<double, most_axes> gain{};
         chosen.left = infinity;
         bool any = false;
@@ -314,6 +328,10 @@ class Proof {
           // Infinite less infinite: nothing is known of either.
           gain[i] = tried.left < infinity ? (here < infinity ? here - 0.5 * tried.left : largest_double) : 0;
           if (!any || tried.left < chosen.left) axis = i, chosen = tried, any = true;
+        }
+        if (here < infinity && !(gain[axis] > worth * here) && axis != longest && may_halve(b, longest)) {
+          axis = longest;
+          chosen = try_halves(b, axis, rise[axis] > 0, left, infinity);
         }
         for (OpenBox& half : chosen.halves) half.gain = gain, half.gain[axis] *= 0.25, half.age = 1;
       }
