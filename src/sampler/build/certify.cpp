@@ -215,12 +215,13 @@ Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& o
       add_loose_leaves(slabs[s], s, options.trials, limits, tasks);
     prove(slabs, tasks, field, limits, host, 0.8f + 0.1f * float(round), 0.9f + 0.1f * float(round));
   }
+  constexpr double rounding = 1e-6;  // of the tree's own sum
   std::vector<char> were_below;
   for (const SlabProof& slab : slabs) were_below.push_back(slab.trials_before() <= options.trials);
   host.parallel_for(slabs.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       SlabProof& slab = slabs[s];
-      if (were_below[s]) halve_leaves(slab, options.trials, field, limits);
+      if (were_below[s]) halve_leaves(slab, options.trials * (1 - rounding), field, limits);
     }
   });
 

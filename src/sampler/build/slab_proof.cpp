@@ -128,8 +128,8 @@ void halve_leaves(SlabProof& slab, double trials, const EnclosedField& field, co
   if (slab.trials() <= trials) return;
   std::vector<Promise> promises;
   for (std::size_t k = 0; k < slab.leaves.size(); ++k) promises.push_back(promise_of(slab, k, field));
-  const std::size_t most = 16 + slab.leaves.size() / 8;
-  for (std::size_t i = 0; i < most && slab.trials() > trials; ++i) {
+  const std::size_t most = slab.leaves.size() + 16 + slab.leaves.size() / 8;
+  while (slab.leaves.size() < most && slab.trials() > trials) {
     const auto best = std::max_element(promises.begin(), promises.end(),
                                        [](const Promise& a, const Promise& b) { return a.gain < b.gain; });
     if (best->split == TreeSplit::leaf) return;

@@ -12,7 +12,7 @@ struct SlabProof {
   KnownRange known;
   std::vector<PackedLeaf> leaves;
   std::vector<LeafProof> proofs;  // of each leaf
-  CanonicalTree tree;             // nodes and slopes, which grow where a leaf is halved; masses are the build's
+  CanonicalTree tree;  // nodes and slopes, which grow where a leaf is halved; masses are the build's
 
   bool proved() const;
   // Of leaf k: what is proved, or in a slab with open leaves what holds at least what was seen; none is lowered there.
