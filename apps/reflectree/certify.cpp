@@ -29,7 +29,11 @@ void add_certify(CLI::App& app, Context& context, Run& run) {
       ->check(CLI::Range(1e-4, 1.).description(""))
       ->capture_default_str()
       ->type_name("X");
-  command->add_option("--boxes", o->certify.boxes_per_leaf, "Boxes that the proof of a leaf may look at")
+  command
+      ->add_option(
+          "--boxes", o->certify.boxes_per_leaf,
+          "Boxes that the proof of a leaf may look at; what is proved by then is kept, up to twice the "
+          "best value seen")
       ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 40U).description(""))
       ->capture_default_str()
       ->type_name("N");

@@ -82,6 +82,28 @@ TEST(Certify, TrialsStayBelowWhatWasPromised) {
   EXPECT_GT(once.report.expected_trials, 1.25f) << "or there was nothing to take back";
 }
 
+// Proofs that end early leave looser bounds; leaves are halved until they are paid for.
+TEST(Certify, HalvedLeavesPayForLooseBounds) {
+  const AnyBrdf f = material("phong:n=3");
+  const SamplerData estimated = build(f);
+  SamplerData data = estimated, unpaid = estimated;
+  const CertifyOptions early{.boxes_per_leaf = 300};
+  certify(data, f, early);
+  EXPECT_TRUE(all_certified(data));
+  EXPECT_NO_THROW(validate(data));
+  EXPECT_LE(data.report.expected_trials, 1.25f);
+  EXPECT_LE(largest_share(data, f, 200000, 3), 1);
+  CertifyOptions never = early;
+  never.trials = 16;
+  certify(unpaid, f, never);
+  EXPECT_GT(unpaid.report.expected_trials, 1.25f) << "or there was nothing to pay for";
+  std::size_t leaves = 0, before = 0;
+  for (const MajorantTree& tree : data.exact) leaves += tree.mass.size();
+  for (const MajorantTree& tree : estimated.exact) before += tree.mass.size();
+  EXPECT_GT(leaves, before);
+  EXPECT_LE(leaves, 3 * before / 2);
+}
+
 // The twin: bounds that are too low are raised to where they must be.
 TEST(CertifyTwin, AWrongBoundIsRaised) {
   const AnyBrdf f = material("oren_nayar");

@@ -15,13 +15,14 @@ namespace reflectree {
 struct CertifyOptions {
   // A bound is raised where it exceeds the largest value seen in its leaf by less than this share: what is left
   // to prove then is not sharp. Relative, in (0, 1]. Leaves that take many boxes get twice as much,
-  // and twice again.
+  // and twice again, up to a tenth.
   double tolerance = 0.01;
-  // The most that they get; in [tolerance, 1].
-  double loosest = 0.1;
-  std::uint64_t boxes_per_leaf = 400000;
+  // Where the boxes are used up, what is proved by then is kept if it exceeds what was seen by no more than this, or by
+  // 2 per mille of the slab's trials; in [tolerance, 1].
+  double loosest = 1;
+  std::uint64_t boxes_per_leaf = 100000;
   // A slab that took no more trials than this before the proof, and would take more after it, has the bounds that
-  // gain most proved once more to a quarter of the tolerance, and again.
+  // gain most proved once more to a quarter of the tolerance, and again, and then leaves halved.
   double trials = 1.25;
 };
 

@@ -80,6 +80,13 @@ struct Task {
   std::uint32_t slab, leaf;
 };
 
+// A leaf's bound may be looser where that takes next to no trials of its slab.
+double affordable(const SlabProof& slab, std::size_t leaf, double loosest) {
+  constexpr double share = 0.002;  // of the slab's trials
+  const double volume = double(area_of(slab.leaves[leaf])) * double(slab.leaves[leaf].height);
+  return std::max(loosest, 1 + share / volume);
+}
+
 // Replaces the proofs of leaves that have none, or by lower bounds. progress: where it begins and ends.
 void prove(std::vector<SlabProof>& slabs, const std::vector<Task>& tasks, const EnclosedField& field,
            const ProofLimits& limits, const Host& host, float progress, float progress_end) {
@@ -96,7 +103,9 @@ void prove(std::vector<SlabProof>& slabs, const std::vector<Task>& tasks, const 
         SlabProof& slab = slabs[tasks[t].slab];
         LeafProof& kept = slab.proofs[tasks[t].leaf];
         try {
-          LeafProof proof = prove_leaf(field, slab.known, slab.leaves[tasks[t].leaf], limits);
+          ProofLimits of_leaf = limits;
+          of_leaf.loosest = affordable(slab, tasks[t].leaf, limits.loosest);
+          LeafProof proof = prove_leaf(field, slab.known, slab.leaves[tasks[t].leaf], of_leaf);
           proof.boxes += kept.boxes;
           proof.seen = std::max(proof.seen, kept.seen);
           const bool better = !kept.proved || (proof.proved && proof.bound < kept.bound);
@@ -140,20 +149,16 @@ void add_loose_leaves(const SlabProof& slab, std::uint32_t index, double trials,
 
 constexpr const char* note_stem = "proof: ";
 
-// The slab's tree with the bounds that are proved, or, in a slab with open leaves, that hold at least what was
-// seen; none is lowered.
-void raise(MajorantTree& tree, const SlabProof& slab, bool certified) {
+// The slab's tree with its bounds.
+void raise(MajorantTree& tree, const SlabProof& slab) {
   const bool halved = slab.leaves.size() > tree.mass.size();
   static_cast<CanonicalTree&>(tree) = slab.tree;
   std::vector<double> volumes;
   bool raised = halved;
   for (std::size_t k = 0; k < slab.leaves.size(); ++k) {
-    const LeafProof& proof = slab.proofs[k];
-    const double height = double(slab.leaves[k].height);
-    const double bound =
-        certified ? proof.bound : std::max(height, proof.seen * (proof.seen > height ? 1.001 : 1));
+    const double bound = slab.bound(k);
     volumes.push_back(double(area_of(slab.leaves[k])) * bound);
-    raised = raised || bound > height;
+    raised = raised || bound > double(slab.leaves[k].height);
   }
   if (raised) set_volumes(tree, volumes);
 }
@@ -210,11 +215,13 @@ Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& o
       add_loose_leaves(slabs[s], s, options.trials, limits, tasks);
     prove(slabs, tasks, field, limits, host, 0.8f + 0.1f * float(round), 0.9f + 0.1f * float(round));
   }
+  constexpr double rounding = 1e-6;  // of the tree's own sum
+  std::vector<char> were_below;
+  for (const SlabProof& slab : slabs) were_below.push_back(slab.trials_before() <= options.trials);
   host.parallel_for(slabs.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       SlabProof& slab = slabs[s];
-      if (slab.proved() && slab.trials_before() <= options.trials)
-        halve_leaves(slab, options.trials, field, limits);
+      if (were_below[s]) halve_leaves(slab, options.trials * (1 - rounding), field, limits);
     }
   });
 
@@ -239,7 +246,7 @@ Certification certify_any(SamplerData& data, const F& f, const CertifyOptions& o
     ++out.slabs;
     tree.status = open == 0 ? BoundStatus::certified : BoundStatus::estimated;
     tree.bound_ratio = open == 0 ? float(ratio) : 0;
-    raise(tree, slab, open == 0);
+    raise(tree, slab);
     if (open > 0) continue;
     ++out.certified_slabs;
     out.largest_ratio = std::max(out.largest_ratio, ratio);

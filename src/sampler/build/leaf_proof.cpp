@@ -21,8 +21,10 @@ struct OpenBox {
   EnclosedPoint point;
   // What halving the box along each axis would bring, as last tried; falls with the square of the side.
   std::array<double, most_axes> gain{};
-  int age = 0;  // halvings since it was tried
+  int age = 0;        // halvings since it was tried
+  double needed = 0;  // the least bound under which it holds, where the worst comes first
 };
+bool needs_less(const OpenBox& a, const OpenBox& b) { return a.needed < b.needed; }
 
 double upper(const EnclosedPoint& p, double bound) {
   if (p.unit.range.hi <= 0) return 0;  // viewers whose albedo is 0 get no sample
@@ -52,27 +54,63 @@ class Proof {
     look_around(boxes_.back());
     climb();
     while (!boxes_.empty()) {
-      if (out_.boxes >= limits_.boxes) return settle();
+      if (out_.boxes >= limits_.boxes || out_.bound == infinity) return settle();
       ease();
-      const OpenBox worst = boxes_.back();
-      boxes_.pop_back();
-      if (holds(worst.point)) continue;
-      look_into(worst);
-      if (!holds(worst.point)) divide(worst);
+      const OpenBox next = take();
+      if (holds(next.point)) continue;
+      look_into(next);
+      if (!holds(next.point)) divide(next);
     }
     return settle();
   }
 
  private:
   // A leaf that is hard gets more room: twice the tolerance after a sixteenth of the boxes, four times after an
-  // eighth, and so on.
+  // eighth, and so on, up to a tenth.
   void ease() {
+    constexpr double most = 0.1;
     double wanted = limits_.tolerance;
     for (std::uint64_t part = limits_.boxes / 16; part > 0 && out_.boxes > part; part *= 2) wanted *= 2;
-    tolerance_ = std::min(wanted, limits_.loosest - 1);
+    tolerance_ = std::max(limits_.tolerance, std::min({wanted, most, limits_.loosest - 1}));
   }
   double proved_bound() const { return out_.bound * (1 - margin); }
   bool holds(const EnclosedPoint& p) const { return upper(p, proved_bound()) <= 0; }
+  // The least bound under which a box holds, to 2 per mille, or the one that there is.
+  double needed(const EnclosedPoint& p) const {
+    constexpr double sharp = 1.002, most = 1e30;
+    double below = out_.bound, bound = below;
+    const auto too_low = [&p](double m) { return upper(p, m * (1 - margin)) > 0; };
+    for (double step = sharp; too_low(bound); step *= step) {
+      if (bound > most) return infinity;
+      below = bound, bound *= step;
+    }
+    while (bound > sharp * below) {
+      const double middle = std::sqrt(below * bound);
+      (too_low(middle) ? below : bound) = middle;
+    }
+    return bound;
+  }
+
+  // Depth first is all that most leaves need. Of a hard one the box that needs the largest bound comes first: so
+  // this bound is proved at any time, and falls.
+  OpenBox take() {
+    constexpr std::uint64_t easy = 2000;
+    if (!worst_first_ && out_.boxes >= easy) {
+      worst_first_ = true;
+      for (OpenBox& b : boxes_) b.needed = needed(b.point);
+      std::make_heap(boxes_.begin(), boxes_.end(), needs_less);
+    }
+    if (worst_first_) std::pop_heap(boxes_.begin(), boxes_.end(), needs_less);
+    const OpenBox next = boxes_.back();
+    boxes_.pop_back();
+    return next;
+  }
+  void leave(const OpenBox& b) {
+    boxes_.push_back(b);
+    if (!worst_first_) return;
+    boxes_.back().needed = needed(b.point);
+    std::push_heap(boxes_.begin(), boxes_.end(), needs_less);
+  }
 
   void enclose(OpenBox& b) {
     ++out_.boxes;
@@ -144,6 +182,16 @@ class Proof {
     out[0].box.hi[axis] = out[1].box.lo[axis] = 0.5 * (b.box.lo[axis] + b.box.hi[axis]);
     return out;
   }
+  // What the whole box says holds for its halves, of which forms may say less.
+  static void inherit(EnclosedPoint& half, const EnclosedPoint& whole) {
+    const auto narrow = [](AffineForm& x, const AffineForm& by) {
+      const RealInterval both = intersection(x.range, by.range);
+      if (both.lo <= both.hi) x.range = both;
+    };
+    if (!(half.unit.range.hi > 0)) return;  // there is nothing in it
+    narrow(half.target, whole.target);
+    if (half.mirrored && whole.mirrored) narrow(*half.mirrored, *whole.mirrored);
+  }
   static bool may_halve(const OpenBox& b, std::size_t axis) {
     return b.box.hi[axis] - b.box.lo[axis] >= smallest_width[axis];
   }
@@ -186,11 +234,16 @@ class Proof {
                std::max(1.5 * (x1 - x0), 0.5 * layer(near_x, far_x)),
                std::max(0.5 * layer(1 - outer, 1 - inner), std::log(outer / std::max(inner, outer / 8)))};
     for (std::size_t i = 3; i < axes_; ++i) side[i] = b.box.hi[i] - b.box.lo[i];
-    // The angle does not matter until it is narrower than what the form of the other unknowns tells of it.
-    constexpr double may_matter = 2;
+    // The angle does not matter until it is narrower than what the form of the other unknowns tells of it. In hard
+    // leaves it is tried where that says so little that the angle may be what is missing.
+    constexpr double may_matter = 2, may_be_missing = 0.15;
     const double angle = b.box.hi[star_axis] - b.box.lo[star_axis];
     const AffineForm& t = b.point.target;
-    if (angle > may_matter || t.slope[star_axis] != 0 || t.log_slope[star_axis] != 0) side[star_axis] = angle;
+    if (angle > may_matter || t.slope[star_axis] != 0 || t.log_slope[star_axis] != 0) {
+      side[star_axis] = angle;
+    } else if (worst_first_ && !(t.log_error < may_be_missing * angle)) {
+      side[star_axis] = 0.25 * angle;
+    }
     return side;
   }
   std::size_t longest_axis(const OpenBox& b, const Sides& side) const {
@@ -212,6 +265,7 @@ class Proof {
     Tried out{cut(b, axis)};
     for (const std::size_t i : {std::size_t(upper_first), std::size_t(!upper_first)}) {
       enclose(out.halves[i]);
+      inherit(out.halves[i].point, b.point);
       out.left += left_of(out.halves[i].point);
       if (i == std::size_t(upper_first) && out.left >= enough && enough < infinity) {
         out.left *= 2;
@@ -230,7 +284,7 @@ class Proof {
       if (may_halve(b, i) && (b.gain[i] > b.gain[axis] || !may_halve(b, axis))) axis = i;
     }
     if (!may_halve(b, axis)) {
-      smallest_.push_back(b);
+      out_.bound = needed(b.point);
       return;
     }
     const AffineForm::Slopes rise = slopes_of_difference(b.point.target, proved_bound(), b.point.unit);
@@ -252,14 +306,17 @@ class Proof {
       for (OpenBox& half : chosen.halves) half.age = 0;
     } else {
       const auto left = [this](const EnclosedPoint& p) { return std::max(upper(p, proved_bound()), 0.); };
-      if (b.age > 0 && b.age <= trusted) {
+      const double here = upper(b.point, proved_bound());
+      // What an axis must gain, of what is left to prove. Where none does, the longest side is halved: slices that
+      // are ever thinner along one axis may never gain what the others would.
+      constexpr double worth = 0.02;
+      if (b.age > 0 && b.age <= trusted && (here == infinity || b.gain[axis] > worth * here)) {
         chosen = try_halves(b, axis, rise[axis] > 0, left, infinity);
         for (OpenBox& half : chosen.halves) half.gain[axis] *= 0.25, ++half.age;
       } else {
         constexpr double thinnest = 1. / 32;
         const Sides side = sides(b);
         const std::size_t longest = longest_axis(b, side);
-        const double here = upper(b.point, proved_bound());
         std::array<double, most_axes> gain{};
         chosen.left = infinity;
         bool any = false;
@@ -272,10 +329,14 @@ class Proof {
           gain[i] = tried.left < infinity ? (here < infinity ? here - 0.5 * tried.left : largest_double) : 0;
           if (!any || tried.left < chosen.left) axis = i, chosen = tried, any = true;
         }
+        if (here < infinity && !(gain[axis] > worth * here) && axis != longest && may_halve(b, longest)) {
+          axis = longest;
+          chosen = try_halves(b, axis, rise[axis] > 0, left, infinity);
+        }
         for (OpenBox& half : chosen.halves) half.gain = gain, half.gain[axis] *= 0.25, half.age = 1;
       }
     }
-    for (const OpenBox& half : chosen.halves) boxes_.push_back(half);
+    for (const OpenBox& half : chosen.halves) leave(half);
   }
 
   // From the best place that was seen, by steps along the axes: what the ratio is held against.
@@ -293,17 +354,12 @@ class Proof {
     out_.bound = std::max(out_.bound, out_.seen);
   }
 
-  // The bound that the boxes need which are left: too small to be divided, or too many.
+  // With the bound that the boxes need which are left.
   LeafProof settle() {
-    double needed = out_.bound;
-    boxes_.insert(boxes_.end(), smallest_.begin(), smallest_.end());
-    for (const OpenBox& b : boxes_) {
-      while (upper(b.point, needed * (1 - margin)) > 0) {
-        needed *= 1.002;
-        if (needed > std::max(out_.bound, out_.seen * limits_.loosest)) return out_;
-      }
-    }
-    out_.bound = needed;
+    double bound = out_.bound;
+    for (const OpenBox& b : boxes_) bound = std::max(bound, needed(b.point));
+    if (!(bound <= std::max(double(leaf_.height), out_.seen * limits_.loosest))) return out_;
+    out_.bound = bound;
     out_.proved = true;
     return out_;
   }
@@ -319,7 +375,8 @@ class Proof {
   double tolerance_ = 0;
   LeafProof out_;
   ProofPoint best_{};
-  std::vector<OpenBox> boxes_, smallest_;
+  std::vector<OpenBox> boxes_;  // a heap, where the worst comes first
+  bool worst_first_ = false;
   static constexpr std::size_t most_recent = 16;
   struct Viewers {
     ProofBox of;
