@@ -144,8 +144,9 @@ inline AffineForm sin2_of_slopes(const ShadingGeometry<AffineForm>& g, const Aff
   return narrower(plain, widened(sqr(h.r * g.wh.z) * around, off));
 }
 
-// The azimuth of wh where wo has none. wh is a sum of wo and wi with positive weights, and
-// so its azimuth lies between theirs, 0 and that of wi, however little is known of wh about the normal. Where the two may point apart the sum is mended, and this is not said.
+// The azimuth of wh where wo has none. wh is a sum of wo and wi with positive weights, so that its azimuth lies
+// between theirs, 0 and that of wi, however little is known of wh about the normal. Where the two may point apart
+// the sum is mended, and this is not said.
 inline AffineForm between_azimuths(AffineForm azimuth_h, const ShadingGeometry<AffineForm>& g) {
   if (!g.azimuth_i || g.wo.y.range.magnitude() > 0 || g.wo.x.range.lo < 0) return azimuth_h;
   const RealInterval cosine = g.wo.x.range * g.wi.x.range + g.wo.z.range * g.wi.z.range,

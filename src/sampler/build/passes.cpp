@@ -38,10 +38,11 @@ std::size_t leaf_count(const std::vector<Slab>& slabs) {
 
 namespace {
 
-// Single functions for which wo has two angles, but for those whose bounds need no attack.
+// Single functions for which wo has two angles, but for those whose bounds need no attack, and for tables of several
+// rotations, which tell their albedo: they are noise, whose closest bounds miss five times as much.
 bool has_many_slabs(const Survey& survey) {
   const Field& field = survey.field;
-  return !field.frame.isotropic() && !field.family && field.patches.empty();
+  return !field.frame.isotropic() && !field.family && field.patches.empty() && !field.f.traits().albedo;
 }
 
 // Of the trials allowed, by which goals fall after each pass of an attack. Where slabs are many only dear ones
