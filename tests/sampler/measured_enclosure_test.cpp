@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "random_boxes.hpp"
+#include "random_rgl.hpp"
 #include "reflectree/brdf/models/neural_brdf.hpp"
 #include "reflectree/brdf/tables/klems_table.hpp"
-#include "reflectree/brdf/tables/rgl_table.hpp"
 #include "reflectree/brdf/tables/specular_table.hpp"
 
 namespace reflectree {
@@ -24,14 +24,7 @@ struct Network {
 // Noise, some of it negative; `bright`: of one node of the colours.
 struct Rgl {
   static AnyBrdf random(Pcg32& bits, float bright = 0) {
-    RglFields f;
-    f.theta_o = {0.f, 0.5f, 1.1f, 1.5707964f};
-    f.warp_width = 9, f.warp_height = 13, f.colour_width = 6, f.colour_height = 7;
-    const auto fill = [&](std::vector<float>& v, std::size_t n, double lo) {
-      for (std::size_t i = 0; i < n; ++i) v.push_back(float(lo + (1 - lo) * uniform(bits)));
-    };
-    fill(f.sigma, 12, 0.3), fill(f.ndf, 17, 0.1), fill(f.vndf, 4 * 9 * 13, 0.05),
-        fill(f.rgb, 4 * 3 * 6 * 7, -0.1);
+    RglFields f = random_rgl_fields(bits, {{0.f, 0.5f, 1.1f, 1.5707964f}, 9, 13, 6, 7}, -0.1);
     for (std::size_t i = 0; i < f.rgb.size(); i += 5) f.rgb[i] += bright;
     return RglTable(f);
   }

@@ -8,22 +8,14 @@
 #include <cmath>
 
 #include "random_boxes.hpp"
-#include "reflectree/brdf/tables/rgl_table.hpp"
+#include "random_rgl.hpp"
 
 namespace reflectree {
 namespace {
 
-// `bright`: of one node of the colours in five; `visible`: of one row of the
-// warp in five.
+// `bright`: of one node of the colours in five; `visible`: of one row of the warp in five.
 AnyBrdf random_table(Pcg32& bits, float bright = 0, float visible = 1, bool steep = false) {
-  RglFields f;
-  f.theta_o = {0.f, 0.4f, 1.1f, 1.5707964f};
-  f.warp_width = 24, f.warp_height = 48, f.colour_width = 8, f.colour_height = 9;
-  const auto fill = [&](std::vector<float>& v, std::size_t n, double lo) {
-    for (std::size_t i = 0; i < n; ++i) v.push_back(float(lo + (1 - lo) * uniform(bits)));
-  };
-  fill(f.sigma, 12, 0.3), fill(f.ndf, 17, 0.1), fill(f.vndf, 4 * 24 * 48, 0.05),
-      fill(f.rgb, 4 * 3 * 8 * 9, 0.2);
+  RglFields f = random_rgl_fields(bits, {{0.f, 0.4f, 1.1f, 1.5707964f}, 24, 48, 8, 9}, 0.2);
   for (std::size_t row = 0; row < 4 * 48; ++row) {
     const float scale = row / 48 == 3 && row % 48 > 30 ? 0.f : row % 5 == 0 ? visible : 1.f;
     for (std::size_t i = 0; i < 24; ++i) f.vndf[24 * row + i] *= scale * (row % 7 == 0 && i < 12 ? 0.f : 1.f);
@@ -35,8 +27,7 @@ AnyBrdf random_table(Pcg32& bits, float bright = 0, float visible = 1, bool stee
   return RglTable(f);
 }
 
-// About a place where wh may be the normal, or at the rim: as wide as likes
-// along each axis.
+// About a place where wh may be the normal, or at the rim, and of any width along each axis.
 Box hard_box(Pcg32& bits, const Domain& domain) {
   constexpr double most[] = {1.5707, 1, 1}, least[] = {0, -1, 0};
   std::array<double, 3> centre{most[0] * std::sqrt(uniform(bits)), -1, 1};
@@ -108,8 +99,7 @@ TEST(RglEnclosureTwin, AnotherTableIsFoundThere) {
   EXPECT_GT(missed(0, 1.02f, 1, 1000), 0U) << "a row of the warp";
 }
 
-// A half is known no less well than the whole: where it was not, the search
-// never halved what is wide.
+// A half is known no less well than the whole: where it was not, the search never halved what is wide.
 TEST(RglEnclosure, HalvesAboutTheMirrorDirectionAreNoWorse) {
   Pcg32 bits(3);
   const AnyBrdf f = random_table(bits, 0, 1, true);
@@ -140,8 +130,7 @@ TEST(RglEnclosure, IsSharpAboutTheMirrorDirection) {
   }
 }
 
-// The cosine of cos_sin_half, by every way in which a compiler may fuse
-// products and sums.
+// The cosine of cos_sin_half, by every way in which a compiler may fuse products and sums.
 float fused_or_not(bool fused, float a, float b, float c) {
   if (fused) return std::fma(a, b, c);
   volatile float product = a * b;

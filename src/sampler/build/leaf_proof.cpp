@@ -46,7 +46,7 @@ class Proof {
     recent_.reserve(most_recent);
     for (std::size_t i = 0; i < axes_; ++i) divided_.push_back(i);
     if (field.divides_angle()) divided_.push_back(star_axis);
-    out_.bound = double(leaf.height);
+    out_.bound = std::max(double(leaf.height), 1e-9);  // needed() multiplies it
   }
 
   LeafProof run() {

@@ -34,31 +34,27 @@ std::size_t leaf_count(const std::vector<Slab>& slabs) {
   return count;
 }
 
-}  // namespace
-
-namespace {
-
 // Single functions for which wo has two angles, but for those whose bounds need no attack, and for tables of several
 // rotations, which tell their albedo: they are noise, whose closest bounds miss five times as much.
-bool has_many_slabs(const Survey& survey) {
+bool is_bounded_closely(const Survey& survey) {
   const Field& field = survey.field;
   return !field.frame.isotropic() && !field.family && field.patches.empty() && !field.f.traits().albedo;
 }
 
 // Of the trials allowed, by which goals fall after each pass of an attack. Where slabs are many only dear ones
 // grow again, and small steps leave each as near as can be to what was asked for.
-float attack_takes(const Survey& survey) { return has_many_slabs(survey) ? 0.02f : 0.06f; }
+float attack_takes(const Survey& survey) { return is_bounded_closely(survey) ? 0.02f : 0.06f; }
 
 // Whether slabs may be spared and halved after an attack. Of isotropic functions all are grown and attacked again.
-bool is_crowded(const Survey& survey) { return survey.field.family || has_many_slabs(survey); }
+bool is_crowded(const Survey& survey) { return survey.field.family || is_bounded_closely(survey); }
 
 GrowthRules exact_rules(const Survey& survey, const BuildOptions& options) {
   // Of the budget: the attack will use the rest.
-  const float spare = has_many_slabs(survey) ? 0.98f : 0.96f;
+  const float spare = is_bounded_closely(survey) ? 0.98f : 0.96f;
   GrowthRules rules{1 + (options.expected_trials - 1) * spare, 0.4f, 60000, true, true, analyse_exact};
   // Where wo has two angles slabs are many, and their attack costs as much as their growth.
   if (!survey.field.frame.isotropic()) rules.effort_share = 0.5f, rules.leaves_kept = 400;
-  if (has_many_slabs(survey)) rules.analyse = analyse_exact_closely, rules.of_all_mass = true;
+  if (is_bounded_closely(survey)) rules.analyse = analyse_exact_closely, rules.of_all_mass = true;
   return rules;
 }
 
@@ -73,7 +69,7 @@ bool any_is_dear(const std::vector<Slab>& slabs, const BuildOptions& options) {
 void grow_dear(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options,
                GrowthRules& rules) {
   const float lower = attack_takes(survey) * (options.expected_trials - 1);
-  if (has_many_slabs(survey)) {
+  if (is_bounded_closely(survey)) {
     for (Slab& slab : slabs) slab.lowered += is_dear(slab, options) ? lower : 0.f;
   } else {
     rules.goal -= lower;
@@ -102,7 +98,7 @@ void widen_unfinished(std::vector<Slab>& slabs, const Survey& survey, float miss
 void attack(std::vector<Slab>& slabs, const Survey& survey, const BuildOptions& options, GrowthRules rules,
             BuildReport& report) {
   constexpr float accepted_overshoot = 2e-7f;
-  const int max_passes = has_many_slabs(survey) ? 16 : 8;  // late ones look at a few slabs
+  const int max_passes = is_bounded_closely(survey) ? 16 : 8;  // late ones look at a few slabs
   for (int pass = 0; pass < max_passes; ++pass) {
     // A lobe that was met by chance is better looked at from the start than grown around blindly, where ridges
     // can be followed.
@@ -171,10 +167,10 @@ std::vector<Slab> build_one_shot(const Survey& survey, const BuildOptions& optio
   std::vector<Slab> slabs = first_slabs(survey);
   constexpr int max_passes = 4;
   // Leaves are dearer where wo has two angles. All of it where weights themselves are asked (probe_density).
-  const float share = survey.field.frame.isotropic() ? 0.8f : has_many_slabs(survey) ? 1 : 0.88f;
+  const float share = survey.field.frame.isotropic() ? 0.8f : is_bounded_closely(survey) ? 1 : 0.88f;
   GrowthRules rules{sqrt(1 + share * options.one_shot_variance), 0.45f, 60000, true, false, analyse_one_shot};
   if (!survey.field.frame.isotropic()) {
-    rules.leaves_kept = 150, rules.of_all_mass = has_many_slabs(survey);
+    rules.leaves_kept = 150, rules.of_all_mass = is_bounded_closely(survey);
     rules.grazing_goal = sqrt(1 + more_at_grazing * share * options.one_shot_variance);
     rules.worst_view = worst_to_asked * options.one_shot_variance;
   }
