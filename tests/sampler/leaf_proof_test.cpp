@@ -67,5 +67,16 @@ TEST(LeafProof, MayBeEndedAtAnyTime) {
   EXPECT_GT(cut, 0);
 }
 
+// A file may say that a leaf has no height: the proof ends, and says that it is open.
+TEST(LeafProof, OfALeafOfNoHeightEnds) {
+  const Subject s;
+  for (std::uint32_t k = 0; k < s.slab().count; ++k) {
+    PackedLeaf leaf = s.packed.exact.leaves[s.slab().first + k];
+    leaf.height = 0;
+    for (const std::uint64_t boxes : {1, 3000})
+      EXPECT_FALSE(prove_leaf(s.field, s.known(), leaf, {0.003, 1e6, boxes}).proved);
+  }
+}
+
 }  // namespace
 }  // namespace reflectree::detail
